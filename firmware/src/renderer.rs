@@ -7,7 +7,7 @@ use glint_hal::frequency::Frequency;
 use glint_hal::scanout::Display;
 use glint_model::edges::EdgeList;
 use glint_model::{Eyes, Frame, FrameBuffer, FrameStats, RenderError, Subject};
-use glint_scene::Scene;
+use glint_scene::{Defaults, Scene};
 use litex_pac::cpu;
 
 use crate::gateware::{self, Cpu, Fallback, GatewareRenderer, Output, RightEye};
@@ -112,6 +112,19 @@ impl Renderer {
         overlay.line(format_args!("{size} by {by}: {cycles} cycles, {rate} fps"));
         if let Some(gateware) = &mut self.gateware {
             gateware.invalidate(back);
+        }
+    }
+
+    /// The options of the start scene: those of the gateware in the largest size, if it exists.
+    pub fn defaults(&self) -> Defaults {
+        let Some(gateware) = &self.gateware else {
+            return Defaults::SOFT_CORE;
+        };
+        let mut sizes = Size::ALL.into_iter().rev();
+        let largest = sizes.find(|size| self.has_size(*size));
+        Defaults {
+            size: largest.unwrap_or_default(),
+            ..gateware.defaults()
         }
     }
 

@@ -7,7 +7,6 @@ use glint_core::camera::ViewError;
 use glint_core::deviation::Deviation;
 use glint_core::feature::{FIELD, GESTURE, MESH, WIREFRAME};
 use glint_core::flash::CONTENTS;
-use glint_core::picture::Backend;
 use glint_core::wireframe::{CUBE, Program, ProgramError};
 use glint_hal::digits::Digits;
 use glint_hal::flash;
@@ -172,21 +171,26 @@ pub fn machine() -> Result<Machine, StartError> {
         let first_buffer = memory.frames[0].as_ptr().addr() as u32;
         GatewareRenderer::new(engine, raymarcher, memory.lists, first_buffer, frequency)
     });
-    let backend = if gateware.is_some() {
-        Backend::Gateware
-    } else {
-        Backend::Cpu
-    };
 
     // Without gateware that draws meshes the soft core draws them, whatever their size.
     let most_triangles = (gateware.as_ref()).map_or(u32::MAX, GatewareRenderer::most_triangles);
     let program = Program::new_checked(CUBE.as_flattened());
     let program = program.map_err(StartError::Program)?;
 
+    let renderer = Renderer {
+        display: Display::new(scanout, memory.frames),
+        samples: memory.samples,
+        depth: memory.depth,
+        right: RightEye::new(memory.eye),
+        scratch: memory.scratch,
+        edges: EdgeList::new(memory.edges),
+        frequency,
+        gateware,
+    };
     let mut machine = Machine::new(
         identity,
         clock,
-        Scene::new(backend).map_err(StartError::Camera)?,
+        Scene::new(renderer.defaults()).map_err(StartError::Camera)?,
         Models::new(
             memory.uploads,
             memory.shapes,
@@ -195,16 +199,7 @@ pub fn machine() -> Result<Machine, StartError> {
             most_triangles,
         )
         .map_err(StartError::Cube)?,
-        Renderer {
-            display: Display::new(scanout, memory.frames),
-            samples: memory.samples,
-            depth: memory.depth,
-            right: RightEye::new(memory.eye),
-            scratch: memory.scratch,
-            edges: EdgeList::new(memory.edges),
-            frequency,
-            gateware,
-        },
+        renderer,
         devices,
         peripherals.ctrl,
     );

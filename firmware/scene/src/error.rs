@@ -3,7 +3,7 @@
 use core::fmt::{self, Display};
 
 use glint_core::camera::ViewError;
-use glint_core::feature::{MESH, OBJECT, SKY, TEXTURE};
+use glint_core::feature::{ANTIALIASING, MESH, OBJECT, SKY, TEXTURE};
 use glint_core::framing::FramingError;
 use glint_core::light::MAX_LIGHTS;
 use glint_core::matrix::MatrixError;
@@ -27,8 +27,10 @@ pub enum SettingError<'l> {
     FitOfOthers,
     /// No allowed camera shows the meshes completely.
     Fit(FramingError),
-    /// A sky was requested from a firmware without one.
+    /// A sky or a gradient was requested from a firmware without them.
     NoSky,
+    /// Four samples a pixel were requested from a firmware without them.
+    NoAntialiasing,
     /// The list of lights is full.
     Lights,
     /// No mesh has this name.
@@ -82,6 +84,7 @@ impl Display for SettingError<'_> {
             ),
             Self::Fit(error) => MESH.when_built(|| write!(f, "fit: {error}")),
             Self::NoSky => write!(f, "background: {SKY}"),
+            Self::NoAntialiasing => write!(f, "aa: {ANTIALIASING}"),
             Self::Lights => write!(
                 f,
                 "light: expected at most {MAX_LIGHTS} lights, `light default` removes them"

@@ -19,5 +19,5 @@ pub use animator::Animator;
 pub use error::{ObjectError, SettingError};
 pub use lines::{Line, LineError, Reason, lines};
 pub use scene::{
-    AnyBoard, Assets, Board, CUBE, Kind, Name, PlacedMesh, Scene, SceneSubject, Sphere,
+    AnyBoard, Assets, Board, CUBE, Defaults, Kind, Name, PlacedMesh, Scene, SceneSubject, Sphere,
 };

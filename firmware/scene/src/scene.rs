@@ -80,6 +80,37 @@ impl Board for AnyBoard {
     }
 }
 
+/// The options of a board's start scene that depend on the board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Defaults {
+    /// Backend that draws the picture.
+    pub backend: Backend,
+    /// Size of the picture.
+    pub size: Size,
+    /// Number of samples whose average is a pixel, in pictures that the board draws 60 times per second.
+    pub samples: Samples,
+    /// Background of meshes.
+    pub background: Background,
+}
+
+impl Defaults {
+    /// A board with all options of the gateware.
+    pub const GATEWARE: Self = Self {
+        backend: Backend::Gateware,
+        size: Size::W1280,
+        samples: Samples::Four,
+        background: Background::Gradient,
+    };
+
+    /// A board whose soft core draws: pictures that take less time.
+    pub const SOFT_CORE: Self = Self {
+        backend: Backend::Cpu,
+        size: Size::W320,
+        samples: Samples::One,
+        background: Background::Colour([0; 3]),
+    };
+}
+
 /// A camera on a sphere about the origin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sphere {
@@ -253,14 +284,16 @@ pub struct Scene {
     pub sphere: Sphere,
     /// Size of the picture.
     pub size: Size,
-    /// Number of samples whose average is a pixel.
-    pub samples: Samples,
+    /// The set number of samples whose average is a pixel; `None` for the [default](Self::samples).
+    pub fixed_samples: Option<Samples>,
     /// The drawing options of all meshes.
     pub options: MeshOptions,
     /// Name of the replacement texture; `None` for their own textures.
     pub texture: Option<Name>,
     /// Backend that draws the picture.
     pub backend: Backend,
+    /// The options of the board's start scene.
+    pub defaults: Defaults,
     /// Whether colours are dithered, or else rounded to nearest.
     pub dither: bool,
     /// Whether text is written over the picture.
@@ -270,11 +303,11 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Returns the start scene, drawn by `backend`.
+    /// Returns the start scene.
     ///
     /// # Errors
     /// [`ViewError`] if the camera of the start scene is invalid.
-    pub fn new(backend: Backend) -> Result<Self, ViewError> {
+    pub fn new(defaults: Defaults) -> Result<Self, ViewError> {
         let sphere = Sphere::START;
         Ok(Self {
             kind: Kind::Solid,
@@ -288,25 +321,33 @@ impl Scene {
             quality: Quality::default(),
             view: sphere.view()?,
             sphere,
-            size: Size::default(),
-            samples: Samples::default(),
+            size: defaults.size,
+            fixed_samples: None,
             options: MeshOptions::default(),
             texture: None,
-            backend,
+            backend: defaults.backend,
+            defaults,
             dither: true,
             overlay: false,
             animation: Animation::default(),
         })
     }
 
-    /// Resets all options except backend and overlay to those of the start scene.
+    /// Resets all options except backend and overlay to those of the start scene. A scene that the soft core draws gets the size of a board
+    /// whose soft core draws.
     ///
     /// # Errors
     /// [`ViewError`] if the camera of the start scene is invalid.
     pub fn reset(&mut self) -> Result<(), ViewError> {
+        let start = Self::new(self.defaults)?;
         *self = Self {
+            backend: self.backend,
             overlay: self.overlay,
-            ..Self::new(self.backend)?
+            size: match self.backend {
+                Backend::Cpu => Defaults::SOFT_CORE.size,
+                Backend::Gateware => start.size,
+            },
+            ..start
         };
         Ok(())
     }
@@ -388,6 +429,7 @@ impl Scene {
                     .skip_while(|size| *size != quality.size())
                     .filter(|size| board.has_size(*size));
                 self.size = sizes.next().unwrap_or(self.size);
+                self.fixed_samples = quality.samples();
                 self.quality = quality;
             }
             Setting::Size { size } => {
@@ -396,7 +438,12 @@ impl Scene {
                 }
                 self.size = size;
             }
-            Setting::Antialiasing { samples } => self.samples = samples,
+            Setting::Antialiasing { samples } => {
+                if samples == Some(Samples::Four) && !ANTIALIASING.is_built {
+                    return Err(SettingError::NoAntialiasing);
+                }
+                self.fixed_samples = samples;
+            }
             Setting::Backend { backend } => {
                 if backend == Backend::Gateware && !board.has_engine() {
                     return Err(SettingError::NoEngine);
@@ -614,9 +661,28 @@ impl Scene {
         }
     }
 
+    /// The number of samples whose average is a pixel: the set one, or else the board's where it draws 60 frames per second. These are not
+    /// pictures by the soft core, for two eyes, and of fields in the largest size.
+    pub fn samples(&self) -> Samples {
+        let is_slow = self.backend == Backend::Cpu
+            || self.stereo.is_some()
+            || self.shows_field() && self.size.doubled().is_none();
+        let default = if is_slow {
+            Samples::One
+        } else {
+            self.defaults.samples
+        };
+        let samples = self.fixed_samples.unwrap_or(default);
+        if ANTIALIASING.is_built {
+            samples
+        } else {
+            Samples::One
+        }
+    }
+
     /// Whether a picture of the scene has depth codes: one with a single sample a pixel.
     pub fn has_depths(&self) -> bool {
-        self.samples == Samples::One || !ANTIALIASING.is_built
+        self.samples() == Samples::One
     }
 
     /// Name of the mesh that is shown, alone or in a field.
@@ -675,12 +741,13 @@ impl Scene {
                 pose: motion.pose(),
             }),
         };
+        let background = self.defaults.background;
         Frame {
             rounding: Rounding::new(self.dither),
             replacement_texture: content.replacement_texture,
             stereo: self.stereo.filter(|_| STEREO.is_built),
-            samples: self.samples,
-            ..Frame::in_appearance(subject, self.view, self.size, &self.appearance)
+            samples: self.samples(),
+            ..Frame::in_appearance(subject, self.view, self.size, &self.appearance, background)
         }
     }
 

@@ -169,7 +169,16 @@ impl Scene {
                 let from = from.filter(|from| from.quality == self.quality);
                 self.put(name, from, out, |scene| Pixels(scene.size))
             }
-            OptionName::Antialiasing => self.put(name, from, out, |scene| scene.samples),
+            OptionName::Antialiasing if from.is_none() => {
+                writeln!(out, "{name} {}", self.samples())
+            }
+            OptionName::Antialiasing => {
+                // A changed quality has also changed the samples.
+                let from = from.filter(|from| from.quality == self.quality);
+                self.put(name, from, out, |scene| {
+                    OrWord(scene.fixed_samples, "default")
+                })
+            }
             OptionName::Backend => self.put(name, from, out, |scene| scene.backend),
             OptionName::Shading => self.put(name, from, out, |scene| scene.options.shading),
             OptionName::Cull => self.put(name, from, out, |scene| switch_name(scene.options.cull)),

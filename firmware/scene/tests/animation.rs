@@ -1,14 +1,13 @@
 //! Tests of animations: the scene after a time, moved directly and by the animator of a board.
 
 use glint_core::fixed::U32_32;
-use glint_core::picture::Backend;
-use glint_scene::{Animator, AnyBoard, Scene};
+use glint_scene::{Animator, AnyBoard, Defaults, Scene};
 
 /// Ten hours, in seconds.
 const TEN_HOURS: u32 = 36_000;
 
 fn scene(lines: &str) -> Scene {
-    let mut scene = Scene::new(Backend::Gateware).expect("a camera in range");
+    let mut scene = Scene::new(Defaults::GATEWARE).expect("a camera in range");
     execute(&mut scene, lines);
     scene
 }

@@ -4,10 +4,10 @@ use glint_core::block::Block;
 use glint_core::console::{Command, ObjectAction, OptionName, Setting};
 use glint_core::mesh::Mesh;
 use glint_core::object::Place;
-use glint_core::picture::{Backend, Size};
+use glint_core::picture::Size;
 use glint_core::quality::Quality;
 use glint_core::words::Words;
-use glint_scene::{AnyBoard, Board, Kind, Reason, Scene};
+use glint_scene::{AnyBoard, Board, Defaults, Kind, Reason, Scene};
 use proptest::prelude::*;
 
 /// A board that supports pictures up to 640×360, and has no engine, and no mesh and no texture named `none`.
@@ -36,7 +36,7 @@ impl Board for SmallBoard {
 }
 
 fn start() -> Scene {
-    Scene::new(Backend::Gateware).expect("a camera in range")
+    Scene::new(Defaults::GATEWARE).expect("a camera in range")
 }
 
 /// Executes the lines of a scene. Returns the error of the first line that fails.
@@ -190,7 +190,7 @@ fn the_text_has_what_differs_from_the_scene_at_start() {
         lines(&scene(
             "quality exact\nlight camera\nscene torus\nmesh on\nfield box:1,1,1"
         )),
-        "mesh on\nlight camera,ffffff\nquality exact\nsize 1280 720\nscene torus\nfield box:1,1,1\n"
+        "mesh on\nlight camera,ffffff\nquality exact\nsize 1280 720\naa 4\nscene torus\nfield box:1,1,1\n"
     );
     assert_eq!(
         lines(&scene("object add a\nscene b\nedges over"))

@@ -7,8 +7,8 @@ use core::mem;
 
 use glint_core::camera::Projection;
 use glint_core::colour::{Rgb565, Rounding, Shading};
-use glint_core::feature::{EDGES, TEXTURE, WIREFRAME};
-use glint_core::picture::{Quarter, Samples, Size};
+use glint_core::feature::{EDGES, SKY, TEXTURE, WIREFRAME};
+use glint_core::picture::{Backend, Quarter, Samples, Size};
 use glint_engines::raymarch::{ray_counts, set_field, tables};
 use glint_engines::triangle::{average, fog, layout, size_code, sky as sky_of};
 use glint_hal::frequency::Frequency;
@@ -17,6 +17,7 @@ use glint_hal::triangle::{Counters, EngineError, Error, Input, Prepared, Raster,
 use glint_model::edges::EdgeStats;
 use glint_model::triangle::descriptor::Layout;
 use glint_model::{Frame, FrameConstants, FrameStats, Stats, Subject, WireframeStats};
+use glint_scene::Defaults;
 use litex_pac::cpu;
 
 use super::buffers::{Buffers, Capacity, Projected, address};
@@ -154,6 +155,28 @@ impl GatewareRenderer {
     pub fn most_triangles(&self) -> u32 {
         let [buffers, _] = &self.buffers;
         2 * buffers.descriptor_limit(self.layout)
+    }
+
+    /// The options of the start scene that this gateware draws.
+    pub fn defaults(&self) -> Defaults {
+        let plain = Defaults {
+            backend: Backend::Gateware,
+            ..Defaults::SOFT_CORE
+        };
+        let all = Defaults::GATEWARE;
+        Defaults {
+            samples: if self.averages {
+                all.samples
+            } else {
+                plain.samples
+            },
+            background: if self.draws_sky && SKY.is_built {
+                all.background
+            } else {
+                plain.background
+            },
+            ..plain
+        }
     }
 
     /// The subjects that the gateware draws, as a list for the console. The CPU draws all other subjects.

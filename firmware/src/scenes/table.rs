@@ -10,7 +10,7 @@ pub static SCENES: [BuiltIn; 12] = [
     // Unbounded repeated cubes in fog
     BuiltIn::picture(
         "cubes",
-        &[feature::FIELD, feature::FOG, feature::SKY, feature::VIEW],
+        &[feature::ANTIALIASING, feature::FIELD, feature::FOG, feature::SKY, feature::VIEW],
         "\
 quality balanced
 lookat 1 -1 1 -1 1.2 -1.5
@@ -23,7 +23,7 @@ field cubes:2,0.4
     // The scenes of a board that runs alone
     BuiltIn::list(
         "demo",
-        &[feature::CPU, feature::DEMO, feature::FIELD, feature::FOG, feature::GESTURE, feature::IMU, feature::LIGHT, feature::MESH, feature::SKY, feature::STEREO, feature::VIEW, feature::WIREFRAME],
+        &[feature::ANTIALIASING, feature::CPU, feature::DEMO, feature::FIELD, feature::FOG, feature::GESTURE, feature::IMU, feature::LIGHT, feature::MESH, feature::SKY, feature::STEREO, feature::VIEW, feature::WIREFRAME],
         &["holoforge", "wireframe", "simplegpu", "poor-mans-vr", "cubes"],
     ),
     // HoloForge: a mesh that a hand turns
@@ -33,6 +33,7 @@ field cubes:2,0.4
         "\
 quality fast
 camera 2.5 40 65
+background 000000
 scene torus
 gesture on
 ",
@@ -56,7 +57,7 @@ gesture on
     // A Menger sponge of depth 4
     BuiltIn::picture(
         "menger",
-        &[feature::FIELD, feature::VIEW],
+        &[feature::ANTIALIASING, feature::FIELD, feature::VIEW],
         "\
 quality balanced
 camera 4 30 60
@@ -66,7 +67,7 @@ field menger:4
     // A ring in a box
     BuiltIn::picture(
         "mesh-in-field",
-        &[feature::FIELD, feature::LIGHT, feature::MESH, feature::MESH_IN_FIELD, feature::SKY, feature::VIEW],
+        &[feature::ANTIALIASING, feature::FIELD, feature::LIGHT, feature::MESH, feature::MESH_IN_FIELD, feature::SKY, feature::VIEW],
         "\
 quality balanced
 camera 2 30 60
@@ -81,9 +82,10 @@ field box:0.35,0.35,0.35
     // The 3D accelerator: five objects with interpolated colours and one light
     BuiltIn::picture(
         "objects",
-        &[feature::LIGHT, feature::MESH, feature::OBJECT, feature::VIEW],
+        &[feature::ANTIALIASING, feature::LIGHT, feature::MESH, feature::OBJECT, feature::SKY, feature::VIEW],
         "\
 quality balanced
+background gradient
 camera 2.2 20 70
 light 3,-1,2,fff0d8
 ambient 000000
@@ -115,6 +117,7 @@ imu look
         &[feature::FIELD, feature::FOG, feature::LIGHT, feature::MESH, feature::MESH_IN_FIELD, feature::SKY, feature::TEXTURE, feature::VIEW],
         "\
 quality balanced
+aa 1
 lookat 3.4 -4.9 1.5 -3.58 4.84 -1.97
 fov 58
 material gold
@@ -133,13 +136,14 @@ field menger:3
     // SimpleGPU: six polygons, clipped to the view volume, without light
     BuiltIn::picture(
         "simplegpu",
-        &[feature::CPU, feature::LIGHT, feature::MESH, feature::VIEW],
+        &[feature::ANTIALIASING, feature::CPU, feature::LIGHT, feature::MESH, feature::VIEW],
         "\
 quality balanced
 lookat 0 -1.2 0.3 0.1 1 -0.1
 fov 150
 light 0,0,1,000000
 ambient ffffff
+background 000000
 clip 3
 winding screen
 scene polygons
@@ -148,7 +152,7 @@ scene polygons
     // Eight spheres of different colours
     BuiltIn::picture(
         "spheres",
-        &[feature::FIELD, feature::SKY, feature::SPHERES, feature::VIEW],
+        &[feature::ANTIALIASING, feature::FIELD, feature::SKY, feature::SPHERES, feature::VIEW],
         "\
 quality balanced
 camera 2.6 40 62
@@ -160,7 +164,7 @@ field spheres:0,0,0,0.6;0.9,0.1,-0.2,0.35;-0.85,-0.35,-0.1,0.4;0.3,-0.85,-0.3,0.
     // The wireframe simulator: a cube that buttons move
     BuiltIn::picture(
         "wireframe",
-        &[feature::WIREFRAME],
+        &[feature::ANTIALIASING, feature::WIREFRAME],
         "\
 quality balanced
 program

@@ -7,8 +7,8 @@ use crate::texture;
 use glint_core::deviation::Deviation;
 use glint_core::flash::{Contents, EncodeError, Image, Item, Kind, Piece, encode};
 use glint_core::mesh::{Mesh, is_name};
-use glint_core::picture::{Backend, Size};
-use glint_scene::{Board, LineError, Reason, Scene, lines};
+use glint_core::picture::Size;
+use glint_scene::{Board, Defaults, LineError, Reason, Scene, lines};
 use glint_scene_file::SceneFile;
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
@@ -252,7 +252,7 @@ fn check_scene(contents: &Contents, text: &str) -> Result<(), FormatError> {
         contents,
         meshes: HashMap::new(),
     };
-    let scene = Scene::new(Backend::Gateware);
+    let scene = Scene::new(Defaults::GATEWARE);
     let mut scene = scene
         .map_err(|error| FormatError::whole("a scene that boards can show", error.to_string()))?;
     let quoted = |line: usize| quote(text.lines().nth(line - 1).unwrap_or("").as_bytes());

@@ -148,7 +148,7 @@ pub fn draw<T>(
         set.map_err(|error| in_scene(refuse(error)))?;
     }
     scene.size = changes.size.unwrap_or(scene.size);
-    scene.samples = changes.samples.unwrap_or(scene.samples);
+    scene.fixed_samples = changes.samples.or(scene.fixed_samples);
     let objects: Vec<_> = (scene.objects.iter())
         .flat_map(|placed| {
             let mesh = board.mesh(&placed.mesh);

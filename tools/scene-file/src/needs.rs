@@ -5,10 +5,12 @@ use std::collections::BTreeSet;
 use glint_core::block::Block;
 use glint_core::camera::Projection;
 use glint_core::colour::{Shading, Winding};
-use glint_core::feature::{CPU, DEMO, Feature, GESTURE, IMU, MESH, SKY, SPHERES, TEXTURE, UPLOAD};
+use glint_core::feature::{
+    ANTIALIASING, CPU, DEMO, Feature, GESTURE, IMU, MESH, SKY, SPHERES, TEXTURE, UPLOAD,
+};
 use glint_core::field::{Field, Flat, Primitive, Solid};
 use glint_core::fixed::U4_28;
-use glint_core::light::Material;
+use glint_core::light::{Background, Material};
 use glint_core::picture::{Backend, Samples};
 use glint_core::shape::Shape;
 use glint_model::{Clip, MeshOptions};
@@ -117,7 +119,7 @@ impl SceneFile {
             // A raymarcher draws the sky behind a field.
             sky: has_triangles && !has_fields && features.contains(&SKY),
             fog: has_triangles && scene.appearance.fog != U4_28::ZERO,
-            antialiasing: scene.samples == Samples::Four,
+            antialiasing: features.contains(&ANTIALIASING),
             // For other meshes the soft core computes the triangle descriptors.
             geometry: has(Block::Line)
                 || has_triangles
@@ -145,8 +147,16 @@ impl SceneFile {
         {
             features.insert(UPLOAD);
         }
-        if scene.appearance.mesh_gradient().is_some() {
+        if scene
+            .appearance
+            .background
+            .and_then(Background::gradient)
+            .is_some()
+        {
             features.insert(SKY);
+        }
+        if scene.samples() == Samples::Four {
+            features.insert(ANTIALIASING);
         }
         if scene.field.is_some_and(|field| field.is_round()) {
             features.insert(SPHERES);

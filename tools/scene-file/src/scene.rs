@@ -15,11 +15,11 @@ use glint_core::field::Field;
 use glint_core::fixed::Turns;
 use glint_core::framing;
 use glint_core::imu::Follow;
-use glint_core::light::Material;
+use glint_core::light::{Background, Material};
 use glint_core::matrix::Axis;
-use glint_core::picture::{Backend, Size};
+use glint_core::picture::{Samples, Size};
 use glint_core::quality::Quality;
-use glint_scene::{AnyBoard, Board, Line, Scene};
+use glint_scene::{AnyBoard, Board, Defaults, Line, Scene};
 
 use crate::built_in::{NAMES, TEXTS};
 use crate::error::{SceneError, Source, quote, unknown};
@@ -84,7 +84,7 @@ impl SceneFile {
 
     /// Parses the text of a scene file. A list of scenes is accepted only if `may_be_list`.
     fn parse_as(name: &str, source: Source, may_be_list: bool) -> Result<Self, SceneError> {
-        let start = Scene::new(Backend::Gateware);
+        let start = Scene::new(Defaults::GATEWARE);
         let start = start.map_err(|error: ViewError| source.whole(error.to_string()))?;
         let file = File::read(source);
         let scene = Self::of(name, &file, start, may_be_list);
@@ -147,6 +147,9 @@ impl SceneFile {
         if !file.has("quality") && !file.has("size") {
             self.add_default(file, "quality", &Quality::default().to_string());
         }
+        if self.depth && !file.has("aa") {
+            self.add_default(file, "aa", Samples::One.name());
+        }
         let has_camera = file.has_any(&["camera", "lookat", "view"]);
         if !has_camera && file.has("field") {
             self.add_default(file, "camera", CAMERA);
@@ -166,9 +169,16 @@ impl SceneFile {
                 }
             }
         }
+        if file.has_any(MESHES) && !file.has_any(&["field", "background"]) {
+            // Boards without the gateware for it have another default.
+            self.add_default(file, "background", Background::GRADIENT);
+        }
         let lights = self.scene.appearance.lights.len();
         if let (Some(value), true, false) = (file.get("light"), lights > 1, file.has("field")) {
             file.refuse("light", value, "one light on meshes");
+        }
+        if let (Some(value), true, false) = (file.get("aa"), self.depth, self.scene.has_depths()) {
+            file.refuse("aa", value, "1 beside the key depth");
         }
         if let Some(value) = file.get("animate") {
             check_animation(file, value, &self.scene);
@@ -350,7 +360,7 @@ impl SceneFile {
     /// # Errors
     /// The board excludes a command, which the message names.
     pub fn scene_on(&self, board: &mut dyn Board) -> Result<Scene, String> {
-        let scene = Scene::new(Backend::Gateware);
+        let scene = Scene::new(Defaults::GATEWARE);
         let mut scene = scene.map_err(|error| error.to_string())?;
         for line in self.settings() {
             let parsed = Line::parse(line).map_err(|reason| reason.to_string())?;

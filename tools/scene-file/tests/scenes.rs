@@ -10,7 +10,7 @@ use glint_core::console::{Command, FORMS, Row};
 use glint_core::feature::FIT;
 use glint_core::field::FRACTION;
 use glint_core::light::Material;
-use glint_core::picture::Size;
+use glint_core::picture::{Samples, Size};
 use glint_core::quality::{Preset, Quality, Threshold};
 use glint_scene::lines;
 use glint_scene_file::{NAMES, Needs, SceneFile, Steer, built_in, keys};
@@ -71,11 +71,16 @@ fn every_key_is_documented() {
 fn the_page_has_what_each_quality_sets() {
     let page = fs::read_to_string(root().join("docs/scenes.md")).unwrap();
     for quality in Quality::ALL {
-        let Preset { size, threshold } = quality.preset();
+        let Preset {
+            size,
+            samples,
+            threshold,
+        } = quality.preset();
+        let samples = samples.map_or("default", Samples::name);
         let Threshold { base, footprint } = threshold;
         let (width, height) = (size.width(), size.height());
         let threshold = format!("{base}·2^-{FRACTION} + z/2^{footprint}");
-        let row = format!("| `{quality}` | {width}×{height} | {threshold} |\n");
+        let row = format!("| `{quality}` | {width}×{height} | {samples} | {threshold} |\n");
         assert!(page.contains(&row), "docs/scenes.md has no row {row}");
     }
 }
@@ -89,7 +94,7 @@ fn the_scene_of_the_page_is_valid() {
     let needs = scene.needs().options().join(" ");
     assert_eq!(
         needs,
-        "--blocks scanout raymarch i2c --no-antialiasing --no-depths --fields box,spheres --lanes 2"
+        "--blocks scanout raymarch i2c --no-depths --fields box,spheres --lanes 2"
     );
 }
 
@@ -208,6 +213,7 @@ fn refused_files() {
             orthographic = 2 → orthographic: expected only beside model or object
             edges = "over" → edges: expected only beside model
             depth = "on" → depth: `"on"`: expected true or false
+            depth = true; aa = 4 → aa: `4`: expected 1 beside the key depth
             geometry = "off" → geometry: `"off"`: expected true or false
             geometry = false → geometry: `false`: expected the key only beside model or object
             animate = "orbit 30" → line 4: animate: `"orbit 30"`: expected a field moving:R,ORBIT,ANGLE beside orbit
@@ -277,6 +283,15 @@ fn each_example_is_valid() {
     }
 }
 
+/// The line that a scene of meshes without the key `background` has at its end.
+fn background(text: &str) -> &'static str {
+    if text.contains("field") {
+        ""
+    } else {
+        "; background gradient"
+    }
+}
+
 /// Without the key `camera`, a scene shows whole meshes with the axis of their file format up, and
 /// a field with the default camera of `glint render`.
 #[test]
@@ -294,7 +309,9 @@ fn automatic_cameras() {
     for (text, expected) in rows(table) {
         let scene = parse(&format!("title = \"a\"\n{text}")).unwrap();
         let lines = scene.lines().collect::<Vec<_>>().join("; ");
-        assert_eq!(lines, format!("quality balanced; {expected}"), "{text}");
+        let background = background(&text);
+        let expected = format!("quality balanced; {expected}{background}");
+        assert_eq!(lines, expected, "{text}");
         let fits = scene.needs().features.contains(&FIT);
         assert_eq!(fits, expected.contains("fit "), "{text}");
     }
@@ -313,14 +330,46 @@ fn materials_of_meshes() {
         let expected = expected.replace("JADE", &format!("{r:02x}{g:02x}{b:02x}"));
         let scene = with_camera(&text);
         let lines = scene.lines().collect::<Vec<_>>().join("; ");
-        let expected = format!("quality balanced; camera 3 30 60; {expected}");
+        let background = background(&text);
+        let expected = format!("quality balanced; camera 3 30 60; {expected}{background}");
         assert_eq!(lines, expected);
+    }
+}
+
+/// A scene with one sample a pixel and one colour behind meshes, unless the text states others.
+fn plain(text: &str) -> SceneFile {
+    let mut text = text.to_owned();
+    for line in ["aa = 1", "background = \"000000\""] {
+        let (key, _) = line.split_once(' ').unwrap();
+        if !text.contains(key) {
+            text = format!("{text}\n{line}");
+        }
+    }
+    with_camera(&text)
+}
+
+/// By default a scene needs antialiasing where it has four samples a pixel, and a gradient behind meshes.
+#[test]
+fn needs_of_defaults() {
+    let table = r#"
+        model = "cube" → --blocks scanout triangle
+        model = "cube"; quality = "fast" → --blocks scanout triangle --no-antialiasing
+        model = "cube"; depth = true → --blocks scanout triangle --no-antialiasing
+        model = "cube"; backend = "cpu" → --blocks scanout
+        model = "cube"; field = "menger:2" → --blocks scanout triangle raymarch --no-sky --fields menger:2 --lanes 2
+        field = "menger:2" → --blocks scanout raymarch --no-depths --fields menger:2 --lanes 2
+        field = "menger:2"; size = "1280 720" → --blocks scanout raymarch --no-antialiasing --no-depths --fields menger:2 --lanes 2
+        field = "menger:2"; stereo = "0.1,4" → --blocks scanout raymarch --no-antialiasing --no-depths --fields menger:2,stereo --lanes 2
+    "#;
+    for (text, expected) in rows(table) {
+        let found = with_camera(&text).needs().options().join(" ");
+        assert_eq!(found, expected, "{text}");
     }
 }
 
 #[test]
 fn needs_follow_from_the_keys() {
-    let options = |text: &str| with_camera(text).needs().options().join(" ");
+    let options = |text: &str| plain(text).needs().options().join(" ");
     let table = r#"
         model = "cube" → --blocks scanout triangle --no-sky --no-antialiasing
         model = "cube"; background = "sky" → --blocks scanout triangle --no-antialiasing
@@ -365,8 +414,9 @@ fn needs_follow_from_the_keys() {
         ));
         scene.unwrap().needs().options().join(" ")
     };
+    assert_eq!(program(""), "--blocks scanout line --no-depths");
     assert_eq!(
-        program(""),
+        program("aa = 1"),
         "--blocks scanout line --no-antialiasing --no-depths"
     );
     assert_eq!(
@@ -378,7 +428,7 @@ fn needs_follow_from_the_keys() {
 #[test]
 fn parts_of_the_firmware_follow_from_the_commands() {
     let features = |text: &str| {
-        let needs = with_camera(text).needs();
+        let needs = plain(text).needs();
         let names = needs.features.iter().map(|feature| feature.name);
         names.collect::<Vec<_>>().join(" ")
     };

@@ -51,7 +51,7 @@ const COMMANDS: [(Feature, &str); 23] = [
     (feature::FIELD, "field"),
     (feature::SPHERES, "field sphere:1"),
     (feature::STEREO, "stereo"),
-    (feature::ANTIALIASING, "aa"),
+    (feature::ANTIALIASING, "aa 4"),
     (feature::FOG, "fog"),
     (feature::MESH_IN_FIELD, "mesh"),
     (feature::LIGHT, "light"),

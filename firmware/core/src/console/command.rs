@@ -98,10 +98,10 @@ commands! {
         shadow Shadow(on: bool) or show in LIGHT: "turn the shadows of the first light in a field on or off, or show the setting"
             => key(Order::Option, "on").with(FIELD)
                 .host(switch("shadow", "on", "Shadows of the first light in a field: sponges, `boxes` and `cubes` cast shadows on their own faces. `normal` without a --light has none"));
-        background Background(background: Or<Default, Background>) or show in VIEW: "show or set the background; default is white for a field and black for meshes"
+        background Background(background: Or<Default, Background>) or show in VIEW: "show or set the background; default is white for a field and gradient for meshes, if the gateware has it"
             => key(Order::Option, "sky").with(LIT)
-                .host(option("background", "white|sky|gradient|RRGGBB", "Background: `white`, `sky`, `gradient` or a colour RRGGBB [default: white behind a field, black behind meshes]")
-                    .expects("white, sky or a colour RRGGBB"));
+                .host(option("background", "white|sky|gradient|RRGGBB", "Background: `white`, `sky`, `gradient` or a colour RRGGBB [default: white behind a field, gradient behind meshes]")
+                    .expects("white, sky, gradient or a colour RRGGBB"));
         fog Fog(density: Or<Off, U4_28>) or show in FOG: "show or set the fog: transmittance is exp(-distance * DENSITY)"
             => key(Order::Option, "0.1").with(LIT)
                 .host(option("fog", "DENSITY", "Fog in the background's colour: transmittance is exp(-distance * DENSITY), with the distance in world units. DENSITY is from 0 to below 16")
@@ -162,11 +162,11 @@ commands! {
         gesture Gesture(action: Option<GestureAction>) in GESTURE: "show the state of the hand; let it steer the camera, calibrate its colour, or send its mask (binary)";
     }
     options {
-        quality Quality(quality: Quality) or show: "show or set the quality: the picture size, and the precision of a field's rays"
+        quality Quality(quality: Quality) or show: "show or set the quality: size and samples of the picture, and the precision of a field's rays"
             => key(Order::Size, "balanced");
         size Size(size: Size): "set the picture size: 320 180, 640 360 or 1280 720"
             => key(Order::Size, "640 360");
-        aa Antialiasing(samples: Samples) or show in ANTIALIASING: "show or set the samples of a pixel: 4 against stair steps at edges, or 1"
+        aa Antialiasing(samples: Or<Default, Samples>) or show: "show or set the samples of a pixel: 1, or 4 against stair steps; default is 4 where it is fast enough"
             => key(Order::Size, "4");
         backend Backend(backend: Backend) or show: "show or set the backend that draws frames"
             => key(Order::Size, "gateware");

@@ -2,10 +2,9 @@
 
 use heapless::Vec;
 
-use crate::colour::Rgb565;
 use crate::fixed::U4_28;
 use crate::light::{
-    Background, Gradient, Highlight, Light, Lighting, MAX_LIGHTS, Material, MeshLighting, Rgb,
+    Background, Highlight, Light, Lighting, MAX_LIGHTS, Material, MeshLighting, Rgb,
 };
 
 /// Appearance of a distance field: material, lights, background and fog. By default each face has a colour that depends on its
@@ -22,7 +21,7 @@ pub struct Appearance {
     pub highlight: Option<Highlight>,
     /// Whether the first light casts shadows in a field.
     pub shadow: bool,
-    /// Background; `None` selects white for a field and black for meshes.
+    /// Background; `None` selects white for a field, and the board's default for meshes.
     pub background: Option<Background>,
     /// Density of the fog per world unit: over a distance d, the fog transmits the fraction exp(−d · density) of the light. 0
     /// means no fog.
@@ -82,18 +81,5 @@ impl Appearance {
     /// The background of a field.
     pub fn field_background(&self) -> Background {
         self.background.unwrap_or(Background::White)
-    }
-
-    /// The gradient behind meshes, if the background is no single colour.
-    pub fn mesh_gradient(&self) -> Option<Gradient> {
-        self.background.and_then(Background::gradient)
-    }
-
-    /// The background of meshes: a single colour.
-    pub fn mesh_background(&self) -> Rgb565 {
-        self.background.map_or(Rgb565(0), |background| {
-            let [_, horizon] = background.colours();
-            Rgb565::from_rgb888(horizon)
-        })
     }
 }

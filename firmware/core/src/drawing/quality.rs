@@ -1,7 +1,7 @@
-//! Quality of pictures: presets for the picture size and the precision of rays in a distance field.
+//! Quality of pictures: presets for size and samples of the picture, and for the precision of rays in a distance field.
 
 use crate::choice::choices;
-use crate::picture::Size;
+use crate::picture::{Samples, Size};
 
 /// A preset that trades frames per second for accuracy of the picture (docs/scenes.md, "Quality").
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -36,6 +36,8 @@ pub struct Threshold {
 pub struct Preset {
     /// Size of the picture, which scan-out enlarges to 1280×720.
     pub size: Size,
+    /// Number of samples whose average is a pixel; `None` for the number at which the board draws 60 frames per second.
+    pub samples: Option<Samples>,
     /// Threshold of marching rays.
     pub threshold: Threshold,
 }
@@ -50,17 +52,25 @@ impl Quality {
         match self {
             Self::Fast => Preset {
                 size: Size::W320,
+                samples: Some(Samples::One),
                 threshold: threshold(28, 14),
             },
             Self::Balanced => Preset {
                 size: Size::W640,
+                samples: None,
                 threshold: threshold(4, 15),
             },
             Self::Exact => Preset {
                 size: Size::W1280,
+                samples: Some(Samples::Four),
                 threshold: threshold(2, 15),
             },
         }
+    }
+
+    /// Samples of this preset's pixels.
+    pub const fn samples(self) -> Option<Samples> {
+        self.preset().samples
     }
 
     /// Size of this preset's picture.

@@ -2,7 +2,6 @@
 
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
-use glint_core::colour::Rgb565;
 use glint_core::fixed::{Q32_32, Turns};
 use glint_core::light::{
     Background, Highlight, Light, LightError, Lighting, MAX_LIGHTS, Material, MeshLighting, Rgb,
@@ -245,20 +244,18 @@ fn backgrounds() {
     };
     let default = Appearance::default();
     assert_eq!(default.field_background(), Background::White);
-    assert_eq!(default.mesh_background(), Rgb565(0));
-    for (text, mesh) in [
-        ("white", Rgb565::WHITE),
-        ("sky", Rgb565::from_rgb888([214, 228, 242])),
-        ("gradient", Rgb565::from_rgb888([92, 98, 108])),
-        ("0080ff", Rgb565::from_rgb888([0, 0x80, 0xFF])),
+    for (text, horizon, is_fixed) in [
+        ("white", [0xFF; 3], None),
+        ("sky", [214, 228, 242], Some(false)),
+        ("gradient", [92, 98, 108], Some(true)),
+        ("0080ff", [0, 0x80, 0xFF], None),
     ] {
         let appearance = background(text);
-        assert_eq!(appearance.field_background().to_string(), text);
-        assert_eq!(appearance.mesh_background(), mesh);
-        let is_fixed = appearance.mesh_gradient().map(|shown| shown.is_fixed);
-        let expected = [("sky", false), ("gradient", true)];
-        let expected = expected.into_iter().find(|(name, _)| *name == text);
-        assert_eq!(is_fixed, expected.map(|(_, is_fixed)| is_fixed), "{text}");
+        let background = appearance.field_background();
+        assert_eq!(background.to_string(), text);
+        assert_eq!(background.colours()[1], horizon);
+        let gradient = background.gradient().map(|shown| shown.is_fixed);
+        assert_eq!(gradient, is_fixed, "{text}");
     }
     for text in ["", "black", "12345", "1234567", "White", "+12345"] {
         assert_eq!(Background::parse(text), None, "{text}");

@@ -201,7 +201,7 @@ impl<'a> Subject<'a> {
         let mesh = mesh.map(|subject| (subject.mesh, Matrix::IDENTITY));
         let objects = self.objects().unwrap_or_default().iter();
         let objects = objects.map(|object| (object.subject.mesh, *object.placement.matrix()));
-        BoundingSphere::around(mesh.into_iter().chain(objects))
+        mesh.into_iter().chain(objects)
     }
 
     /// The mesh with this number, and the colour that replaces its own colours; `None` after the last mesh.
@@ -321,18 +321,21 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// A frame with one eye, and with the mesh lights and the background of `appearance`. Wireframes and hidden edges have a black
-    /// background.
+    /// A frame with one eye, and with the mesh lights and the background of `appearance`, or else with this background. Wireframes and
+    /// hidden edges have a black background.
     pub fn in_appearance(
         subject: Subject<'a>,
         view: View,
         size: Size,
         appearance: &Appearance,
+        default: Background,
     ) -> Self {
+        let background = appearance.background.unwrap_or(default);
+        let [_, horizon] = background.colours();
         let (clear, sky, fog) = match subject {
             Subject::Mesh(_) | Subject::Objects(_) | Subject::Edges(_, Edges::Over) => (
-                appearance.mesh_background(),
-                appearance.mesh_gradient(),
+                Rgb565::from_rgb888(horizon),
+                background.gradient(),
                 appearance.fog,
             ),
             Subject::Edges(_, Edges::Hidden)

@@ -12,22 +12,24 @@ use glint::error::{FormatError, InputError, quote};
 use glint::program;
 use glint::render::BoardRenderer;
 use glint::scene::Changes;
+use glint_core::colour::Shading;
 use glint_core::picture::{Backend, Samples, Size};
 use glint_core::quality::Quality;
-use glint_scene::Scene;
+use glint_scene::{Defaults, Scene};
 use std::path::PathBuf;
 
 /// Quality and size of pictures.
 #[derive(clap::Args)]
 pub struct SizeArguments {
-    /// Quality: `fast` (320x180), `balanced` (640x360) or `exact` (1280x720). It sets the picture's size, and the precision of
-    /// the rays of a field [default: the scene's; without a scene, 320x180 with the precision of `balanced`].
+    /// Quality: `fast` (320x180, one sample a pixel), `balanced` (640x360) or `exact` (1280x720, four samples a pixel). It also sets the
+    /// precision of the rays of a field [default: the scene's; without a scene, 1280x720 with the precision of `balanced`].
     #[arg(long, value_parser = named(Quality::ALL, Quality::name))]
     quality: Option<Quality>,
     /// Size of the picture: 320x180, 640x360 or 1280x720; overrides the size of the quality.
     #[arg(long, value_name = "WxH")]
     size: Option<String>,
-    /// Antialiasing: number of samples whose average is a pixel [default: the scene's; without a scene, 1].
+    /// Antialiasing: number of samples whose average is a pixel [default: the quality's or the scene's; otherwise 4, but 1
+    /// with --depth and for the soft core].
     #[arg(long, value_parser = named(Samples::ALL, Samples::name))]
     aa: Option<Samples>,
 }
@@ -43,15 +45,19 @@ impl SizeArguments {
         })
     }
 
-    /// The default scene with these options.
-    pub fn scene(&self) -> anyhow::Result<Scene> {
+    /// The start scene with these options.
+    pub fn scene(&self, defaults: Defaults) -> anyhow::Result<Scene> {
         let size = self.changes()?.size;
-        let preset = self.quality.map(Quality::size);
+        let preset = self.quality.map(Quality::preset);
         Ok(Scene {
             quality: self.quality.unwrap_or_default(),
-            size: size.or(preset).unwrap_or_default(),
-            samples: self.aa.unwrap_or_default(),
-            ..Scene::new(Backend::Gateware)?
+            size: size
+                .or(preset.map(|preset| preset.size))
+                .unwrap_or(defaults.size),
+            fixed_samples: (self.aa)
+                .or(preset.and_then(|preset| preset.samples))
+                .or(Some(defaults.samples)),
+            ..Scene::new(defaults)?
         })
     }
 }
@@ -204,6 +210,15 @@ impl TransferArguments {
     }
 }
 
+/// The options of a picture without options.
+#[derive(Clone, Copy)]
+pub struct PictureDefaults {
+    /// Options of the start scene. With one sample, scenes without their own number of samples have one too.
+    pub scene: Defaults,
+    /// Shading of smooth surfaces: of models whose files have normals.
+    pub smooth_surfaces: Shading,
+}
+
 /// Options of a command that draws.
 #[derive(clap::Args)]
 pub struct DrawingArguments {
@@ -219,6 +234,24 @@ pub struct DrawingArguments {
 }
 
 impl DrawingArguments {
+    /// The defaults of a picture. The soft core takes too long for a large one, and for smooth shading.
+    pub fn defaults(&self) -> PictureDefaults {
+        let scene = match self.backend {
+            Some(Backend::Cpu) => Defaults::SOFT_CORE,
+            Some(Backend::Gateware) | None => Defaults::GATEWARE,
+        };
+        PictureDefaults {
+            scene: Defaults {
+                background: Defaults::GATEWARE.background,
+                ..scene
+            },
+            smooth_surfaces: match self.board {
+                ModelOrBoard::Model => Shading::Smooth,
+                ModelOrBoard::Board(_) => Shading::Flat,
+            },
+        }
+    }
+
     /// Rejects board options if the model draws.
     pub fn check(&self) -> Result<(), InputError> {
         self.transfer.check(&self.board, self.backend)

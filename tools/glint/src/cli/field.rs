@@ -9,7 +9,7 @@ use glint::field;
 use glint_core::colour::Rgb565;
 use glint_core::field::{Field, KINDS};
 use glint_core::light::Material;
-use glint_scene::Scene;
+use glint_scene::{Defaults, Scene};
 
 /// The options for a distance field and for the appearance of a scene.
 #[derive(Args)]
@@ -31,8 +31,8 @@ impl FieldArguments {
         self.name().and_then(field::file)
     }
 
-    /// The default scene with these options, and with those for the size.
-    pub fn scene(&self, size: &SizeArguments) -> anyhow::Result<Scene> {
+    /// The start scene with these options, and with those for the size.
+    pub fn scene(&self, size: &SizeArguments, defaults: Defaults) -> anyhow::Result<Scene> {
         let parse = |text| {
             let text = field::with_files(text)?;
             Field::parse(&text).map_err(|error| {
@@ -42,7 +42,7 @@ impl FieldArguments {
         };
         let mut scene = Scene {
             field: self.name().map(parse).transpose()?,
-            ..size.scene()?
+            ..size.scene(defaults)?
         };
         self.options.apply(&mut scene)?;
         Ok(scene)

@@ -10,8 +10,7 @@ use glint_core::camera::View;
 use glint_core::console::{self, FORMS, Forms, HostOption, Order, Row, Setting, accepted_words};
 use glint_core::fixed::Turns;
 use glint_core::light::MAX_LIGHTS;
-use glint_core::picture::Backend;
-use glint_scene::{AnyBoard, Scene};
+use glint_scene::{AnyBoard, Defaults, Scene};
 
 /// The options given on the command line, with their values.
 pub struct OptionArguments {
@@ -226,7 +225,7 @@ impl OptionArguments {
     pub fn camera(&self, view: View) -> anyhow::Result<View> {
         let mut scene = Scene {
             view,
-            ..Scene::new(Backend::Gateware)?
+            ..Scene::new(Defaults::GATEWARE)?
         };
         let given = self.given.iter();
         for given in given.filter(|given| given.row.forms.order != Order::Option) {

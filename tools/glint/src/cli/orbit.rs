@@ -23,9 +23,10 @@ use std::path::PathBuf;
 /// Render an animation in which the camera turns once around a model, a distance field, a model in
 /// a field, or a scene.
 ///
-/// By default the camera shows the whole model, and turns around it about the up axis. With a
+/// By default the camera shows the whole model in all frames, and turns around it about the up axis. With a
 /// camera option, in a field, and in a scene that states a camera, the camera turns around the
-/// origin about the z axis. The first camera is that of `glint render`.
+/// origin about the z axis. The first camera is that of `glint render`, except for the lens that shows the
+/// whole model.
 #[derive(Args)]
 pub struct OrbitArguments {
     #[command(flatten)]
@@ -67,16 +68,18 @@ impl OrbitArguments {
     pub fn run(self) -> anyhow::Result<()> {
         self.drawing.check()?;
         let instead = "--field or --scene";
-        self.subject.with_frame(&[], false, instead, |shown| {
-            let inputs = self.subject.inputs(shown.scene);
-            let out = Output::open(&self.out, ANIMATION, inputs)?;
-            if let Subject::Wireframe(_) = shown.frame.subject {
-                let expected = "a scene with a camera";
-                return Err(bad_value("--scene", expected, "a wireframe program").into());
-            }
-            let views = self.subject.turn(shown, self.frames)?;
-            self.write(out, shown, &views)
-        })
+        let defaults = self.drawing.defaults();
+        self.subject
+            .with_frame(&[], false, instead, defaults, |shown| {
+                let inputs = self.subject.inputs(shown.scene);
+                let out = Output::open(&self.out, ANIMATION, inputs)?;
+                if let Subject::Wireframe(_) = shown.frame.subject {
+                    let expected = "a scene with a camera";
+                    return Err(bad_value("--scene", expected, "a wireframe program").into());
+                }
+                let views = self.subject.turn(shown, self.frames)?;
+                self.write(out, shown, &views)
+            })
     }
 
     /// Renders a frame for each camera, and writes the animation.

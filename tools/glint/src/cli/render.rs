@@ -14,7 +14,7 @@ use glint::board::{Board, BoardName, ModelOrBoard};
 use glint::convert::TextureReport;
 use glint::object::Description;
 use glint::render::{Frame, Parts, RayCounts, Rendered, Stats, on_model, remarks};
-use glint_core::picture::Samples;
+use glint_core::picture::{Quarter, Samples};
 use glint_scene_file::SceneFile;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -86,8 +86,12 @@ impl RenderArguments {
         self.drawing.check()?;
         let objects = self.objects()?;
         let instead = "--field, --object or --scene";
+        let mut defaults = self.drawing.defaults();
+        if self.depth.is_some() {
+            defaults.scene.samples = Samples::One;
+        }
         self.subject
-            .with_frame(&objects, self.keep_scale, instead, |shown| {
+            .with_frame(&objects, self.keep_scale, instead, defaults, |shown| {
                 let view = self.subject.view(shown)?;
                 let frame = &Frame {
                     view,
@@ -142,7 +146,7 @@ impl RenderArguments {
             return print_json(&outcome);
         }
         print_textures(shown.textures)?;
-        print_stats(&stats)
+        print_stats(&stats, frame.is_divided())
     }
 
     fn objects(&self) -> anyhow::Result<Vec<Description>> {
@@ -202,12 +206,21 @@ impl RenderArguments {
     }
 }
 
-/// Prints the statistics of a frame as text.
-pub fn print_stats(stats: &Stats) -> anyhow::Result<()> {
+/// Prints the statistics of a frame as text. The quarters of a frame that `is_divided` get the mesh, the program or the edges each.
+pub fn print_stats(stats: &Stats, is_divided: bool) -> anyhow::Result<()> {
+    let passes = if is_divided {
+        Quarter::ALL.len() as u32
+    } else {
+        1
+    };
+    let given = |count: u32| match is_divided {
+        true => format!("{passes} x {}", count / passes),
+        false => count.to_string(),
+    };
     if let Some(counts) = &stats.mesh {
         say(format_args!(
             "triangles  {} in, {} culled, {} clipped, {} drawn",
-            counts.triangles_in,
+            given(counts.triangles_in),
             counts.triangles_culled,
             counts.triangles_clipped,
             counts.triangles_drawn
@@ -235,13 +248,16 @@ pub fn print_stats(stats: &Stats) -> anyhow::Result<()> {
     if let Some(counts) = &stats.wireframe {
         say(format_args!(
             "segments   {} in, {} drawn as lines, {} pixels",
-            counts.segments, counts.lines, counts.line_pixels
+            given(counts.segments),
+            counts.lines,
+            counts.line_pixels
         ))?;
     }
     if let Some(counts) = &stats.edges {
         say(format_args!(
             "edges      {} in, {} drawn as lines",
-            counts.edges_in, counts.edges_drawn
+            given(counts.edges_in),
+            counts.edges_drawn
         ))?;
     }
     if let (Some(cycles), Some(clock)) = (stats.cycles, stats.clock) {

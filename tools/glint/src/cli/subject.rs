@@ -1,7 +1,7 @@
 //! The subject of `glint render` and `glint orbit`: a model, a field, a model in a field, or a scene, with its camera.
 
 use super::camera::{CameraArguments, CameraSubject};
-use super::common::{SizeArguments, bad_value};
+use super::common::{PictureDefaults, SizeArguments, bad_value};
 use super::convert::load;
 use super::field::FieldArguments;
 use super::heading;
@@ -15,6 +15,7 @@ use glint::scene;
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
 use glint_core::object::{MAX_OBJECTS, Place};
+use glint_core::picture::Samples;
 use glint_core::texture::Texture;
 use glint_scene::{Assets, Kind, Scene};
 use glint_scene_file::SceneFile;
@@ -44,7 +45,7 @@ pub struct SubjectArguments {
 
 impl SubjectArguments {
     /// Calls `draw` with the frame. `others` are objects in addition to the model; `instead` names
-    /// the options that can replace the model, for an error message.
+    /// the options that can replace the model, for an error message. `defaults` are the options that are not given.
     ///
     /// # Errors
     /// There is nothing to draw, a file cannot be read, or an option does not apply.
@@ -53,6 +54,7 @@ impl SubjectArguments {
         others: &[Description],
         keep_scale: bool,
         instead: &str,
+        defaults: PictureDefaults,
         draw: impl FnOnce(&CameraSubject) -> anyhow::Result<T>,
     ) -> anyhow::Result<T> {
         let model = self.model.as_deref();
@@ -60,7 +62,11 @@ impl SubjectArguments {
             self.texels.refuse("a model", "--scene")?;
             let file = super::scene::read(name)?;
             let scene = Some(&file);
-            return scene::draw(&file, &self.size.changes()?, |frame| {
+            let mut changes = self.size.changes()?;
+            if defaults.scene.samples == Samples::One && file.scene().fixed_samples.is_none() {
+                changes.samples = changes.samples.or(Some(Samples::One));
+            }
+            return scene::draw(&file, &changes, |frame| {
                 draw(&CameraSubject {
                     frame,
                     model,
@@ -69,7 +75,7 @@ impl SubjectArguments {
                 })
             })?;
         }
-        let mut scene = self.field.scene(&self.size)?;
+        let mut scene = self.field.scene(&self.size, defaults.scene)?;
         if model.is_none() && others.is_empty() {
             self.texels.refuse("a model", "none")?;
             if self.texture.is_some() {
@@ -85,6 +91,10 @@ impl SubjectArguments {
         let mesh = mesh.transpose()?;
         let models = others.iter().map(|object| load(&object.model, options));
         let models = models.collect::<anyhow::Result<Vec<_>>>()?;
+        let mut shown = loaded.iter().chain(&models);
+        if !self.field.options.has("shading") && shown.all(Model::is_smooth) {
+            scene.options.shading = defaults.smooth_surfaces;
+        }
         let colour = self.field.mesh_colour(&scene)?;
         let place = Place {
             colour,

@@ -11,7 +11,7 @@ use glint::model;
 use glint::render::{Frame, Rendered, Subject, WireframeSubject, on_model};
 use glint::view;
 use glint::wireframe::{self, Action, Form, Made, MotionForm, Played};
-use glint_core::picture::Size;
+use glint_core::picture::{Samples, Size};
 use glint_core::wireframe::{Program, Viewing};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -118,8 +118,11 @@ pub struct RenderArguments {
     #[command(flatten)]
     drawing: DrawingArguments,
     /// Size of the picture: 320x180, 640x360 or 1280x720.
-    #[arg(long, value_name = "WxH", default_value = "640x360")]
+    #[arg(long, value_name = "WxH", default_value = "1280x720")]
     size: String,
+    /// Antialiasing: number of samples whose average is a pixel.
+    #[arg(long, value_parser = named(Samples::ALL, Samples::name), default_value = "4")]
+    aa: Samples,
     /// Write the counts of segments, lines and pixels as JSON.
     #[arg(long, value_name = "STATS.json")]
     stats: Option<PathBuf>,
@@ -276,7 +279,10 @@ impl RenderArguments {
                 let subject = Subject::Wireframe(WireframeSubject { program, pose });
                 // The program has its own eye, so the frame's camera has no effect.
                 let camera = view::spherical("2,30,60")?;
-                on_model(&Frame::new(subject, camera, size))?
+                on_model(&Frame {
+                    samples: self.aa,
+                    ..Frame::new(subject, camera, size)
+                })?
             }
             ModelOrBoard::Board(name) => {
                 // The board supports only the drift-free motion. The host has already computed the accumulated motion.
@@ -294,7 +300,7 @@ impl RenderArguments {
         if self.drawing.transfer.json {
             return print_json(&stats);
         }
-        print_stats(&stats)?;
+        print_stats(&stats, self.aa == Samples::Four && size.doubled().is_none())?;
         if refused > 0 {
             say(format_args!(
                 "note       {refused} steps were skipped, because coordinates would have left their range"
@@ -314,6 +320,6 @@ impl RenderArguments {
         let bar = bar("program and frame");
         let renderer = self.drawing.renderer(&mut *board, name);
         let mut renderer = renderer.with_progress(advance(&bar));
-        Ok(renderer.play(program, script, size)?)
+        Ok(renderer.play(program, script, size, self.aa)?)
     }
 }

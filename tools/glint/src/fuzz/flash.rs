@@ -4,9 +4,8 @@ use crate::image::check_contents;
 use glint_core::block::Block;
 use glint_core::demo::{Demo, Move};
 use glint_core::flash::{self, Contents, Kind};
-use glint_core::picture::Backend;
 use glint_core::wire::crc32;
-use glint_scene::{AnyBoard, Scene, lines};
+use glint_scene::{AnyBoard, Defaults, Scene, lines};
 
 /// Parses the input as a firmware with its header, and as the contents of an image with all items.
 /// Returns whether the contents are valid.
@@ -37,7 +36,7 @@ pub fn run(input: &[u8]) -> bool {
 
 /// Executes the lines of a scene like a board.
 fn run_scene(text: &str) {
-    let Ok(mut scene) = Scene::new(Backend::Gateware) else {
+    let Ok(mut scene) = Scene::new(Defaults::GATEWARE) else {
         return;
     };
     for line in lines(text) {

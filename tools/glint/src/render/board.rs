@@ -1,6 +1,6 @@
 //! A renderer that draws frames on a board, by console commands.
 
-use super::commands::{TEXTURE, commands, size_command, view_command};
+use super::commands::{TEXTURE, commands, samples_command, size_command, view_command};
 use super::rendered::{Error, Parts, Rendered};
 use super::stats::{Stats, stats_of};
 use crate::board::{Board, Route};
@@ -11,7 +11,7 @@ use crate::transfer;
 use crate::wireframe::Action;
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
-use glint_core::picture::{Backend, Size};
+use glint_core::picture::{Backend, Samples, Size};
 use glint_model::{Frame, Subject};
 use glint_scene_file::SceneFile;
 
@@ -97,8 +97,10 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
     /// The firmware refuses a command, or a transfer fails.
     pub fn render(&mut self, frame: &Frame, parts: Parts) -> Result<Rendered, Error> {
         let backend = self.backend.map(|backend| format!("backend {backend}"));
-        if let Some(backend) = &backend {
-            self.console.command(backend)?;
+        // The board draws during uploads. In a larger size the soft core would need more time for this.
+        let size = [size_command(frame.size), samples_command(frame.samples)];
+        for command in size.iter().chain(&backend) {
+            self.console.command(command)?;
         }
         let mut lines = match self.scene.clone() {
             Some(scene) => self.load_scene(&scene, frame)?,
@@ -159,10 +161,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         let field = frame.subject.field_part();
         lines.extend(field.map(|field| format!("quality {}", field.quality)));
         lines.push(size_command(frame.size));
-        // A firmware for scenes with one sample a pixel has no command for them.
-        if frame.samples != scene.scene().samples {
-            lines.push(format!("aa {}", frame.samples));
-        }
+        lines.push(samples_command(frame.samples));
         // A wireframe program contains its eye, and a firmware for wireframes has no camera
         // commands.
         if !matches!(frame.subject, Subject::Wireframe(_)) {
@@ -171,8 +170,8 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         Ok(lines)
     }
 
-    /// Draws a program of the wireframe simulator on the board in a picture of size `size`, plays a script of keys, one key per
-    /// frame, and draws the last frame again.
+    /// Draws a program of the wireframe simulator on the board in a picture of size `size` with `samples` samples a pixel, plays a script of
+    /// keys, one key per frame, and draws the last frame again.
     ///
     /// # Errors
     /// The firmware refuses the program or a key, or the upload fails.
@@ -181,11 +180,13 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         program: &[u8],
         script: &[Action],
         size: Size,
+        samples: Samples,
     ) -> Result<Rendered, Error> {
         if let Some(backend) = self.backend {
             self.console.command(&format!("backend {backend}"))?;
         }
         self.console.command(&size_command(size))?;
+        self.console.command(&samples_command(samples))?;
         let session = self.stage(program)?;
         let progress = &mut *self.progress;
         transfer::upload_for(

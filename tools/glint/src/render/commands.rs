@@ -6,9 +6,9 @@ use glint_core::camera::View;
 use glint_core::colour::Rounding;
 use glint_core::light::{Background, MeshLighting};
 use glint_core::object::Place;
-use glint_core::picture::{Backend, Size};
+use glint_core::picture::{Samples, Size};
 use glint_model::{Frame, MeshOptions, Object, Subject};
-use glint_scene::{Kind, Name, PlacedMesh, Scene};
+use glint_scene::{Defaults, Kind, Name, PlacedMesh, Scene};
 
 /// Name of a frame's texture on the board.
 pub const TEXTURE: &str = "texture";
@@ -16,6 +16,11 @@ pub const TEXTURE: &str = "texture";
 /// The console command that sets the picture's size.
 pub fn size_command(size: Size) -> String {
     format!("size {} {}", size.width(), size.height())
+}
+
+/// The console command that sets the samples of a pixel.
+pub fn samples_command(samples: Samples) -> String {
+    format!("aa {samples}")
 }
 
 /// The console command that sets a camera. Its decimal numbers are exact, so the board reads
@@ -35,11 +40,15 @@ pub fn commands(
     mesh: &str,
     object: impl Fn(usize) -> String,
 ) -> Result<Vec<String>, InputError> {
-    let start = Scene::new(Backend::Gateware);
+    // The size at the start, and with it the samples, depend on the board: `scene_of` states the samples.
+    let start = Scene::new(Defaults {
+        size: frame.size,
+        ..Defaults::GATEWARE
+    });
     let start = start.map_err(|error| {
         FormatError::whole("a camera", error.to_string()).in_file("scene at start")
     })?;
-    let mut text = "scene default\n".to_owned();
+    let mut text = format!("scene default\n{}\n", size_command(frame.size));
     // Writing to a `String` does not fail.
     let _ = scene_of(frame, mesh, object, &start).write_lines(&start, &mut text);
     Ok(text.lines().map(str::to_owned).collect())
@@ -50,7 +59,7 @@ fn scene_of(frame: &Frame, mesh: &str, object: impl Fn(usize) -> String, start: 
     let mut scene = Scene {
         view: frame.view,
         size: frame.size,
-        samples: frame.samples,
+        fixed_samples: Some(frame.samples),
         dither: frame.rounding == Rounding::Dithered,
         stereo: frame.stereo,
         texture: frame.replacement_texture.map(|_| name(TEXTURE)),

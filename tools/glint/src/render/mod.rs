@@ -12,7 +12,7 @@ mod stats;
 
 pub use crate::board::Route;
 pub use board::BoardRenderer;
-pub use commands::{commands, size_command, view_command};
+pub use commands::{commands, samples_command, size_command, view_command};
 pub use glint_model::{FieldSubject, Frame, MeshSubject, Subject, WireframeSubject};
 pub use model::on_model;
 pub use remarks::remarks;

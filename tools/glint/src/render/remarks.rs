@@ -2,7 +2,7 @@
 
 use super::model::picture_of_one;
 use super::{Frame, Stats, Subject};
-use glint_core::picture::Size;
+use glint_core::picture::{Samples, Size};
 use glint_model::{MeshSubject, Object, RenderError};
 
 /// Returns the warnings about a frame with these statistics. Each warning names a remedy.
@@ -89,6 +89,7 @@ fn shows_backs(frame: &Frame) -> Result<bool, RenderError> {
     };
     let culled = Frame {
         size: Size::W320,
+        samples: Samples::One,
         stereo: None,
         ..*frame
     };
@@ -96,6 +97,7 @@ fn shows_backs(frame: &Frame) -> Result<bool, RenderError> {
     let (whole, _) = picture_of_one(&Frame {
         subject,
         size: Size::W320,
+        samples: Samples::One,
         stereo: None,
         ..*frame
     })?;

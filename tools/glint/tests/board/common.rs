@@ -48,6 +48,14 @@ pub fn console<S: Simulation>(board: &mut SimulatedBoard<S>) -> Console<'_, Simu
     console
 }
 
+/// The console of a newly started board that draws small pictures with one sample a pixel.
+pub fn small<S: Simulation>(board: &mut SimulatedBoard<S>) -> Console<'_, SimulatedBoard<S>> {
+    let mut console = console(board);
+    console.command("size 320 180").unwrap();
+    console.command("aa 1").unwrap();
+    console
+}
+
 /// A renderer on a newly started board, with direct access to its memory.
 pub fn renderer<S: Simulation>(
     board: &mut SimulatedBoard<S>,

@@ -229,7 +229,11 @@ fn the_built_in_demo_runs_without_valid_contents() {
 fn keeps_the_scene(pieces: &[Piece], blocks: u32, number: u8, error: &str) {
     let mut all = vec![
         piece(Kind::Scene, "good", "size 320 180\nfield menger:1\n"),
-        piece(Kind::Scene, "also", "backend cpu\nfield box:1,1,1\n"),
+        piece(
+            Kind::Scene,
+            "also",
+            "backend cpu\nsize 320 180\nfield box:1,1,1\n",
+        ),
         piece(Kind::List, "start", "good\nbad\nalso\n"),
     ];
     all.extend_from_slice(pieces);
@@ -275,7 +279,7 @@ fn a_scene_that_cannot_be_shown_is_left_out() {
         (
             vec![scene("field menger:2\n")],
             2,
-            "bad: flash byte 0x400120: expected the CRC-32 ",
+            "bad: flash byte 0x400130: expected the CRC-32 ",
         ),
         (vec![], 3, "scene `bad`: expected cube or "),
         (vec![missing.clone()], 4, no_mesh),

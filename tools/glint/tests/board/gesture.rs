@@ -2,7 +2,7 @@
 //! whole path from the pins of the sensor's port through the gesture engine, the firmware and the
 //! triangle engine to the monitor.
 
-use crate::common::{console, emulator, mesh};
+use crate::common::{console, emulator, mesh, small};
 use glint::board::Uart;
 use glint::board::{EmulatedBoard, SimulatedBoard, Simulation};
 use glint::console::{Console, value};
@@ -370,7 +370,7 @@ fn sights_have_their_outcomes(console: &mut Console<SimulatedBoard<EmulatedBoard
 #[test]
 fn a_calibration_finds_the_hand() {
     let mut board = emulator();
-    let mut console = console(&mut board);
+    let mut console = small(&mut board);
     let place = Hand {
         centre: [160.0, 110.0],
         area: 18_000.0,

@@ -1,6 +1,6 @@
 //! Interrupted uploads: the uploading program is killed, or a user cancels the upload on the console.
 
-use crate::common::{begin_upload, console, emulator, info, mesh};
+use crate::common::{begin_upload, console, emulator, info, mesh, small};
 use crate::terminal::{Terminal, patience};
 use glint::board::{Board, BoardError, EmulatedBoard, SimulatedBoard, Uart};
 use glint::console::Console;
@@ -169,7 +169,7 @@ impl Board for Stopped {
 #[test]
 fn transfers_go_on_after_the_host_was_stopped() {
     let mut board = emulator();
-    console(&mut board);
+    small(&mut board);
     let mut stopped = Stopped { board, writes: 0 };
     let quiet: &mut transfer::Progress = &mut |_, _| {};
     // The host stops after the command and some frames of the transfer.

@@ -198,6 +198,7 @@ fn a_mesh_seen_from_behind_has_a_hint() {
     let mut renderer = renderer(&mut board);
     renderer.upload(&patch.mesh, Some("patch")).unwrap();
     let console = renderer.console();
+    console.command("size 320 180").unwrap();
     for (command, is_hinted) in [
         ("camera 3 20 30", true),
         ("cull off", false),
@@ -426,7 +427,8 @@ fn an_orbit_on_a_board_is_the_models() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("board-orbit");
     std::fs::create_dir_all(&folder).unwrap();
     let orbit = |subject: &str, board: &str| {
-        let command = format!("orbit --frames 6 --force --out a.png --json {subject} {board}");
+        let options = "--frames 6 --size 320x180 --aa 1 --force --out a.png --json";
+        let command = format!("orbit {options} {subject} {board}");
         let output = Command::new(env!("CARGO_BIN_EXE_glint"))
             .args(command.split_whitespace())
             .current_dir(&folder)
@@ -447,8 +449,8 @@ fn an_orbit_on_a_board_is_the_models() {
         ("gear --stereo 0.1,3", ""),
         ("gear --field box:1,1,0.1", ""),
         ("--field menger:2 --fog 0.1", ""),
-        ("--scene mesh-in-field --size 320x180", ""),
-        ("--scene objects --size 320x180", ""),
+        ("--scene mesh-in-field", ""),
+        ("--scene objects", ""),
     ] {
         let by_board = orbit(subject, &format!("--board emulated {more}"));
         assert!(by_board == orbit(subject, ""), "{subject} {more}");

@@ -1,6 +1,6 @@
 //! Objects on the board: several named meshes in memory, drawn as the model draws them.
 
-use crate::common::{address, console, drawn_alike, emulator, info, mesh, object, read, renderer};
+use crate::common::{address, drawn_alike, emulator, info, mesh, object, read, renderer, small};
 use glint::board::{EmulatedBoard, SimulatedBoard};
 use glint::console::Console;
 use glint::render::{Frame, Subject};
@@ -37,7 +37,7 @@ fn objects_are_the_models() {
 fn meshes_have_names_and_share_the_memory() {
     let [a, b, c] = ["cube", "icosphere:1", "icosphere:2"].map(mesh);
     let mut board = emulator();
-    let mut console = console(&mut board);
+    let mut console = small(&mut board);
     let start = address(&mut console, "staging");
     let quiet: &mut transfer::Progress = &mut |_, _| {};
     for (number, (mesh, name)) in (1..).zip([(&a, "a"), (&b, "b"), (&c, "c")]) {

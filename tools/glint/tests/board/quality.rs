@@ -112,12 +112,12 @@ fn a_later_size_replaces_that_of_the_quality() {
         (quality.concat(), info::<u32>(&mut console, "size"))
     };
     let is = |name: &str, width| (format!("quality {name}"), width);
-    assert_eq!(state(&[]), is("balanced", 320));
+    assert_eq!(state(&[]), is("balanced", 1280));
     for (quality, size, ..) in STATED {
         let line = format!("quality {quality}");
         assert_eq!(state(&[&line]), is(quality.name(), size.width()));
         assert_eq!(state(&["size 320 180"]), is(quality.name(), 320));
     }
     assert_eq!(state(&["scene cubes"]), is("balanced", 640));
-    assert_eq!(state(&["scene default"]), is("balanced", 320));
+    assert_eq!(state(&["scene default"]), is("balanced", 1280));
 }

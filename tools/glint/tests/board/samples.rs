@@ -8,6 +8,7 @@ use glint_core::appearance::Appearance;
 use glint_core::colour::{Rounding, Shading};
 use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, U4_28};
+use glint_core::light::Background;
 use glint_core::picture::{Backend, Edges, Samples, Size};
 use glint_core::quality::Quality;
 use glint_core::stereo::{Stereo, Tint};
@@ -71,7 +72,10 @@ fn averages_are_the_models() {
             fog: U4_28::lit("0.2"),
             ..divided(Subject::Mesh(smooth), far)
         },
-        divided(over, far),
+        Frame {
+            sky: Background::Gradient.gradient(),
+            ..divided(over, far)
+        },
         divided(Subject::Objects(&objects), far),
         divided(Subject::Field(field), far),
         Frame {

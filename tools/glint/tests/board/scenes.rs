@@ -42,13 +42,13 @@ fn scenes_are_the_models() {
     console.command("scene default").unwrap();
     assert_eq!(info::<String>(console, "scene"), "cube");
     assert!(console.command("object list").unwrap().is_empty());
-    assert_eq!(info::<u32>(console, "size"), 320);
+    assert_eq!(info::<u32>(console, "size"), 1280);
 }
 
 /// A scene file with a mesh that is not built into the firmware.
 #[test]
 fn a_scene_file_is_the_models() {
-    const FILE: &str = "title = \"a\"\nmodel = \"icosphere:2\"\ncamera = \"2 30 60\"\nfov = 60\nlight = \"1,2,3,ff8040\"\n";
+    const FILE: &str = "title = \"a\"\nmodel = \"icosphere:2\"\ncamera = \"2 30 60\"\nfov = 60\nlight = \"1,2,3,ff8040\"\ndepth = true\n";
     let scene = SceneFile::parse("a", "a.toml", FILE).unwrap();
     let mut board = emulator();
     let mut renderer = renderer(&mut board).with_scene(Some(scene.clone()));

@@ -2,7 +2,7 @@
 //! combination of the model's two pictures for one eye.
 
 use crate::common::{
-    assert_has, console, counts, drawn_alike, emulator, mesh, plain, renderer, two_objects,
+    assert_has, console, counts, drawn_alike, emulator, mesh, plain, renderer, small, two_objects,
 };
 use glint::board::Board;
 use glint::board::Uart;
@@ -103,7 +103,7 @@ fn two_eyes_are_the_models() {
 #[test]
 fn no_picture_is_half_composed() {
     let mut board = emulator();
-    let mut console = console(&mut board);
+    let mut console = small(&mut board);
     console.command("scene sphere").unwrap();
     let mut wholes = Vec::new();
     let settings = ["stereo off", "stereo 0.2,2", "stereo 0.2,2,red-cyan"];

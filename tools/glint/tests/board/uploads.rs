@@ -1,7 +1,7 @@
 //! Uploads of meshes over a faulty line, of invalid meshes, and of textures.
 
 use crate::common::{
-    address, console, emulator, emulator_with, info, mesh, read, renderer, running_board,
+    address, console, emulator, emulator_with, info, mesh, read, renderer, running_board, small,
 };
 use glint::board::{Board, BoardError};
 use glint::console::{Console, ConsoleError};
@@ -126,6 +126,7 @@ fn most_triangles(capability: Shading, most: u32) {
     let mut board = emulator_with(capability);
     let mut renderer = renderer(&mut board);
     renderer.upload(&many(most), None).unwrap();
+    renderer.console().command("size 320 180").unwrap();
     let stats = renderer.console().command("render").unwrap();
     assert!(stats.contains(&"backend gateware".to_owned()), "{stats:?}");
     assert!(stats.contains(&format!("triangles_in {most}")), "{stats:?}");
@@ -160,7 +161,7 @@ fn frame(console: &mut Console<impl Board>) -> Vec<u8> {
 fn a_bad_upload_leaves_the_old_model() {
     let (good, other) = (mesh("cube"), mesh("icosphere:1"));
     let mut board = emulator();
-    let mut console = console(&mut board);
+    let mut console = small(&mut board);
     let quiet: &mut transfer::Progress = &mut |_, _| {};
     transfer::upload(&mut console, &good, None, 1, quiet).unwrap();
     let shown = frame(&mut console);
@@ -222,7 +223,7 @@ fn texture(colour: u16) -> Vec<u8> {
 #[test]
 fn a_texture_is_uploaded_under_a_name() {
     let mut board = emulator();
-    let mut console = console(&mut board);
+    let mut console = small(&mut board);
     let quiet: &mut transfer::Progress = &mut |_, _| {};
     let mut session = 0;
     let mut upload = |console: &mut Console<_>, bytes: &[u8], name| {

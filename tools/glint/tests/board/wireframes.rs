@@ -8,7 +8,7 @@ use glint::console::{Console, ConsoleError};
 use glint::render::{Frame, Subject, WireframeSubject, on_model};
 use glint::transfer::{self, TransferError};
 use glint::{generate, view, wireframe};
-use glint_core::picture::Size;
+use glint_core::picture::{Samples, Size};
 use glint_core::wireframe::{Key, Motion, Program, Requests, Viewing};
 
 /// Number of clock cycles in a millisecond.
@@ -75,7 +75,7 @@ fn a_session_with_buttons() {
     let program = cube();
     let mut motion = Motion::default();
     console.command("scene wireframe").unwrap();
-    console.command("size 320 180").unwrap();
+    console.command("quality fast").unwrap();
     let stats = console.command("render").unwrap();
     let start = picture(&program, &motion);
     assert!(shown(&mut console)[0] == start);
@@ -147,6 +147,7 @@ fn a_session_with_commands() {
     let text = "eye 0 0 4\nplane 2\nwindow -2 -1.125 2 1.125\nsegment -1 0 1 1 0.5 1\nsegment 0 -1 1 0 1 4\nend\n";
     let program = wireframe::parse(wireframe::Form::Text, text.into()).unwrap();
     let console = renderer.console();
+    console.command("quality fast").unwrap();
     let refused = |error: ConsoleError| error.to_string();
     let error = refused(console.command("press up").unwrap_err());
     assert!(error.contains("expected `program` first"), "{error}");
@@ -195,7 +196,9 @@ fn a_script_of_keys() {
     let mut renderer = renderer(&mut board);
     let program = cube();
     let script = wireframe::script("rotate,right:2,pan,up,zoom-in").unwrap();
-    let drawn = renderer.play(&program, &script, Size::W320).unwrap();
+    let drawn = renderer
+        .play(&program, &script, Size::W320, Samples::One)
+        .unwrap();
     let mut motion = Motion::default();
     for step in [
         Key::Right.step(true),
@@ -221,7 +224,7 @@ fn repeated_frames_after_a_sky() {
         "fog 0.3",
         "bench triangle 2",
         "scene wireframe",
-        "size 320 180",
+        "quality fast",
         // The second frame uses the memory of the mesh's second frame.
         "bench triangle 2",
     ] {

@@ -16,7 +16,7 @@ fn fields_and_their_files() {
         let said = succeed(&folder, &command);
         (picture(&folder.join("a.png")), said)
     };
-    let seen = "--view far.json --depth a.f32 --stats a.json";
+    let seen = "--view far.json --size 320x180 --depth a.f32 --stats a.json";
     let (one, said) = render("box:0.5,0.5,0.25", seen);
     assert!(said.starts_with("rays       57600 cast, "), "{said}");
     let stats = json(&folder.join("a.json"));
@@ -39,7 +39,7 @@ fn fields_and_their_files() {
     let hits = depth.iter().filter(|z| z.is_finite()).count();
     assert_eq!(hits as u64, number("hits"));
 
-    let eyes = "--view far.json --stereo 0.05,18 --json";
+    let eyes = "--view far.json --size 320x180 --stereo 0.05,18 --json";
     let (two, said) = render("box:0.5,0.5,0.25", eyes);
     assert_ne!(one, two);
     assert!(
@@ -154,7 +154,10 @@ fn warnings_of_pictures_that_show_nothing() {
         ("two.obj --camera 2,30,60", ""),
         ("two.obj --camera 2,30,120", backs),
     ] {
-        let [_, error] = said(&folder, &format!("render --force --out a.png {arguments}"));
+        let [_, error] = said(
+            &folder,
+            &format!("render --size 320x180 --force --out a.png {arguments}"),
+        );
         assert_eq!(error.lines().count(), expected.lines().count(), "{error}");
         assert!(error.ends_with(expected), "{arguments}: {error}");
     }

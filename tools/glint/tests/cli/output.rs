@@ -224,9 +224,9 @@ fn a_file_with_contents_is_kept() {
 #[test]
 fn standard_input_and_output() {
     let folder = folder("standard");
-    succeed(&folder, "render icosphere:2 --out whole.png");
+    succeed(&folder, "render icosphere:2 --quality fast --out whole.png");
     let whole = fs::read(folder.join("whole.png")).unwrap();
-    let piped = glint(&folder, "render icosphere:2 --out - --json");
+    let piped = glint(&folder, "render icosphere:2 --quality fast --out - --json");
     assert!(piped.status.success() && piped.stdout == whole);
     let report: serde_json::Value = serde_json::from_slice(&piped.stderr).unwrap();
     assert_eq!(report["triangles_in"], 80);

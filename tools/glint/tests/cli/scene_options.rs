@@ -49,7 +49,7 @@ fn scenes_of_meshes_are_those_of_render() {
         model = "a.obj"; fov = 40; zoom = 1.5 → inner/a.obj --fov 40 --zoom 1.5
         model = "a.stl"; orthographic = 2 → inner/a.stl --orthographic 2
         model = "a.stl"; material = "gold" → inner/a.stl --material gold
-        model = "teapot"; material = "jade"; camera = "3 20 60" → teapot --material jade --camera 3,20,60
+        model = "teapot"; material = "jade"; camera = "3 20 60" → teapot --material jade --camera 3,20,60 --shading flat
         object = ["a.obj move 1,0,0", "cube colour ff0000"]; material = "sky" → --object 'inner/a.obj move 1,0,0' --object 'cube colour ff0000' --material sky
         model = "a.obj"; field = "box:0.2,2,0.2" → inner/a.obj --field box:0.2,2,0.2
     "#;

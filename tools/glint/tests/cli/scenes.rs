@@ -33,7 +33,7 @@ fn a_scene_from_nothing() {
     for expected in [
         "field union:box:2,2,0.1+sphere:0.6",
         "material jade",
-        "--blocks scanout raymarch i2c --no-antialiasing --no-depths --fields box,spheres --lanes 2",
+        "--blocks scanout raymarch i2c --no-depths --fields box,spheres --lanes 2",
     ] {
         assert!(shown.contains(expected), "{expected}: {shown}");
     }

@@ -102,20 +102,21 @@ fn pictures_after_keys() {
     let folder = folder("wireframe_pictures");
     std::fs::write(folder.join("a.wft"), PROGRAM).unwrap();
     let render = |more: &str| {
-        let render = format!("wireframe render a.wft --out a.png {more}");
+        let render = format!("wireframe render a.wft --aa 1 --out a.png {more}");
         let text = succeed(&folder, &render);
         (text, picture(&folder.join("a.png")))
     };
-    let (text, still) = render("");
+    let (text, still) = render("--size 640x360");
     // At z = 1 the scale is 2/3 of the scale in the view plane, which is 160 pixels per unit.
     assert_eq!(text, "segments   2 in, 2 drawn as lines, 428 pixels\n");
     assert_eq!(still.len(), 3 * 640 * 360);
     let count = |colour: [u8; 3]| still.chunks(3).filter(|pixel| *pixel == colour).count();
     let (green, black) = (count([0, 255, 0]), count([0; 3]));
     assert_eq!((green, green + black), (427, 640 * 360));
-    let (_, moved) = render("--press up:2,rotate,left,pan,down:2");
+    let (_, moved) = render("--press up:2,rotate,left,pan,down:2 --size 640x360");
     assert!(moved != still);
-    let (_, back) = render("--press up:2,rotate,left,right,pan,down:2,zoom-in,zoom-out");
+    let (_, back) =
+        render("--press up:2,rotate,left,right,pan,down:2,zoom-in,zoom-out --size 640x360");
     assert!(back == still);
     let (text, small) = render("--press=up:300 --motion=accumulated --size=320x180");
     assert_eq!(small.len(), 3 * 320 * 180);

@@ -25,7 +25,7 @@ use glint::render::{
 };
 use glint::transfer::stage;
 use glint::view;
-use glint_core::picture::Size;
+use glint_core::picture::{Samples, Size};
 use glint_core::wire::Manifest;
 use glint_vectors::meshes;
 use glint_vectors::scenes::Scene;
@@ -245,6 +245,8 @@ fn draw(size: Size, scenes: Vec<Scene>) {
             lines.extend([
                 format!("cull {}", if cull { "on" } else { "off" }),
                 render::size_command(size),
+                render::samples_command(Samples::One),
+                "background 000000".to_owned(),
                 render::view_command(&view),
             ]);
             let colour = expected.image.colour.clone();
