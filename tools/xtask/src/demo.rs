@@ -1,18 +1,15 @@
-//! `cargo xtask demo`: builds everything that the demo needs, then runs `glint demo`.
+//! `cargo xtask demo`: writes a first picture, builds everything that the demo needs, then runs `glint demo`.
 
 use anyhow::Result;
 
 use crate::gateware::{self, Board};
 use crate::{bootstrap, firmware, run};
 
-/// Builds everything and runs `glint demo` with `arguments`.
+/// Writes the first picture of `glint demo`, builds everything, and runs `glint demo` with `arguments`.
 ///
 /// # Errors
 /// A build or the demo fails.
 pub fn demo(arguments: &[String]) -> Result<()> {
-    bootstrap::bootstrap()?;
-    gateware::build(Board::Virtual)?;
-    firmware::build(Board::Virtual, &[])?;
     // Only the demo writes to its default folder, so it may replace the files there.
     let mut arguments = arguments.to_vec();
     if !arguments
@@ -21,5 +18,12 @@ pub fn demo(arguments: &[String]) -> Result<()> {
     {
         arguments.push("--force".to_owned());
     }
+    let mut first = arguments.clone();
+    first.push("--first".to_owned());
+    // The first picture needs only the host program, so it is there long before the SoC.
+    run::program("glint", "glint", "demo", &first)?;
+    bootstrap::bootstrap()?;
+    gateware::build(Board::Virtual)?;
+    firmware::build(Board::Virtual, &[])?;
     run::program("glint", "glint", "demo", &arguments)
 }

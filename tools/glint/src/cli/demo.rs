@@ -1,6 +1,6 @@
 //! `glint demo`: a demonstration of the whole system.
 
-use super::camera::turn;
+use super::camera::{angles, whole};
 use super::convert::load;
 use super::messages::say;
 use super::output::{Output, PICTURE};
@@ -16,8 +16,8 @@ use glint::model::Model;
 use glint::picture::{Image, write_animation};
 use glint::program;
 use glint::render::{
-    BoardRenderer, FieldSubject, Frame, Parts, Rendered, Route, Stats, Subject, on_model,
-    size_command,
+    BoardRenderer, FieldSubject, Frame, MeshSubject, Parts, Rendered, Route, Stats, Subject,
+    on_model, samples_command, size_command,
 };
 use glint::scene::{self, Changes};
 use glint::view;
@@ -26,8 +26,10 @@ use glint_core::camera::View;
 use glint_core::colour::Shading;
 use glint_core::field::{Field, Menger, Primitive};
 use glint_core::fixed::{Q32_32, Turns, U8_28};
+use glint_core::light::Background;
+use glint_core::matrix::{Axis, Matrix};
 use glint_core::mesh::Mesh;
-use glint_core::picture::{Backend, Size};
+use glint_core::picture::{Backend, Samples, Size};
 use glint_core::quality::Quality;
 use glint_core::stereo::{Stereo, Tint};
 use std::io::{self, Write};
@@ -53,13 +55,22 @@ pub struct DemoArguments {
     /// Number of frames of the stereo animation of a Menger sponge.
     #[arg(long, default_value_t = 4)]
     sponge: u16,
+    /// Only write the first picture: the first model, or without models the scene `room`, drawn by the bit-exact model on this machine.
+    #[arg(long)]
+    first: bool,
 }
 
 const MODELS: [&str; 3] = ["icosphere:6", "gear", "teapot"];
 /// Load address and entry point of the firmware.
 const MAIN_RAM: u32 = 0x4000_0000;
-const SIZE: Size = Size::W320;
-const ORBIT_SIZE: Size = Size::W640;
+const SIZE: Size = Size::W1280;
+const SAMPLES: Samples = Samples::Four;
+/// Size of the frame that the soft core draws too, for a comparison.
+const COMPARED: Size = Size::W320;
+/// File name of the first picture.
+const FIRST: &str = "first.png";
+/// The scene of the first picture.
+const FIRST_SCENE: &str = "room";
 const ORBIT_FRAMES_PER_SECOND: u16 = 12;
 const SPONGE: Field = Field::Primitive(Primitive::Menger(Menger { depth: 4 }));
 const EYES: Stereo = Stereo {
@@ -79,9 +90,8 @@ struct Row {
     number: u32,
     picture: PathBuf,
     stats: Stats,
-    /// Clock cycles that the board's soft core takes to draw the same frame without the accelerators, if measured.
-    cpu_cycles: Option<u64>,
-    cycles_per_second: f64,
+    /// Number of triangles of the model.
+    triangles: u32,
 }
 
 impl DemoArguments {
@@ -89,6 +99,9 @@ impl DemoArguments {
         std::fs::create_dir_all(&self.out)
             .with_context(|| format!("{}: cannot be created", self.out.display()))?;
         check_folder(&self.out)?;
+        if self.first {
+            return self.write_first();
+        }
         let names = match &self.models[..] {
             [] => MODELS.to_vec(),
             names => names.iter().map(String::as_str).collect(),
@@ -104,36 +117,93 @@ impl DemoArguments {
 
         // The two boards run in parallel: the simulation of a board uses one CPU core, and most hosts have at least two.
         let (first, others) = models.split_first().context("no model")?;
-        let (mut rows, lines) = std::thread::scope(|scope| {
+        let (mut rows, mut lines, compared) = std::thread::scope(|scope| {
             let second = scope.spawn(|| self.second_board(first, others, &firmware));
-            let first = self.first_board(first, &firmware)?;
+            let (first, compared) = self.first_board(first, &firmware)?;
             let _waiting = spinner("waiting for the second board");
             let second = second.join();
             let (mut rows, lines) =
                 second.map_err(|_| anyhow::anyhow!("the second board's thread panicked"))??;
             rows.push(first);
-            anyhow::Ok((rows, lines))
+            anyhow::Ok((rows, lines, compared))
         })?;
         rows.sort_by_key(|row| row.number);
+        lines.insert(0, compared);
         print_table(&rows)?;
         lines.into_iter().try_for_each(say)
     }
 
+    /// Draws a picture by the model, writes it and prints its name.
+    fn write_first(&self) -> anyhow::Result<()> {
+        let path = self.out.join(FIRST);
+        let (shown, drawn) = match self.models.first() {
+            Some(name) => {
+                let model = load(name, Options::default())?;
+                let shading = if model.is_smooth() {
+                    Shading::Smooth
+                } else {
+                    Shading::Flat
+                };
+                let mesh = Mesh::new_checked(&model.mesh)?;
+                let subject = Subject::Mesh(MeshSubject {
+                    shading,
+                    ..MeshSubject::new(mesh)
+                });
+                let frame = frame(subject, model_view(mesh, [azimuth(0)].into_iter())?[0]);
+                (name.clone(), on_model(&frame)?)
+            }
+            None => {
+                let changes = Changes {
+                    size: Some(SIZE),
+                    samples: Some(SAMPLES),
+                    ..Changes::default()
+                };
+                let scene = super::scene::read(FIRST_SCENE)?;
+                (
+                    format!("scene {FIRST_SCENE}"),
+                    scene::draw(&scene, &changes, on_model)??,
+                )
+            }
+        };
+        write_picture(&path, |out| drawn.image.picture().write_png(out))?;
+        say(format_args!(
+            "{}: {shown}, {SIZE}, {SAMPLES} samples a pixel, by the bit-exact model",
+            path.display()
+        ))
+    }
+
     /// Draws a model on the first board, over the serial line only: BIOS, serial boot of the firmware, upload of the model. Then
-    /// the soft core draws the same picture, for a comparison of the cycles.
-    fn first_board(&self, model: &Named, firmware: &[u8]) -> anyhow::Result<Row> {
+    /// gateware and soft core draw a small picture, for a comparison of the cycles, which the returned line states.
+    fn first_board(&self, model: &Named, firmware: &[u8]) -> anyhow::Result<(Row, String)> {
         let mut board = board::verilated_bios()?;
         let console = boot(&mut board, firmware)?;
         let bar = bar(model.0);
         let mut renderer = BoardRenderer::new(console)
             .with_backend(Backend::Gateware)
             .with_progress(advance(&bar));
-        let mut row = self.show(&mut renderer, model, 0)?;
+        let row = self.show(&mut renderer, model, 0)?;
         bar.finish();
-        let _waiting = spinner("the soft core draws the same frame");
-        renderer.console().command("backend cpu")?;
-        row.cpu_cycles = renderer.look(&camera(azimuth(0))?)?.cycles;
-        Ok(row)
+        let _waiting = spinner("the soft core draws a frame");
+        let view = model_view(Mesh::new_checked(&model.1.mesh)?, [azimuth(0)].into_iter())?[0];
+        let mut cycles = |backend| {
+            let commands = [
+                format!("backend {backend}"),
+                size_command(COMPARED),
+                samples_command(Samples::One),
+            ];
+            for command in commands {
+                renderer.console().command(&command)?;
+            }
+            let stats = renderer.look(&view)?;
+            stats.cycles.context("no cycles in the reply")
+        };
+        let [by_gateware, by_cpu] = [cycles(Backend::Gateware)?, cycles(Backend::Cpu)?];
+        let compared = format!(
+            "{} in {COMPARED} with one sample a pixel: soft core {by_cpu} cycles, gateware {by_gateware}: {:.0} times as fast",
+            model.0,
+            by_cpu as f64 / by_gateware as f64
+        );
+        Ok((row, compared))
     }
 
     /// Runs the second board, which starts with the firmware in its memory. It shows `models`,
@@ -156,23 +226,20 @@ impl DemoArguments {
         for (number, model) in (1..).zip(models) {
             rows.push(self.show(&mut renderer, model, number)?);
         }
-        let (name, _) = models.last().unwrap_or(first);
-        if models.is_empty() {
-            renderer.upload(&first.1.mesh, None)?;
-        }
+        let (name, model) = models.last().unwrap_or(first);
         let clock = renderer.board().inner().clock_hz();
         let path = self.out.join("orbit.png");
-        let cycles = self.orbit(&mut renderer, &path)?;
+        let cycles = self.orbit(&mut renderer, model, &path)?;
         let around = format!("{} frames around {name}", self.orbit);
-        let mut lines = vec![line(&path, &around, ORBIT_SIZE, cycles, clock)];
+        let mut lines = vec![line(&path, &around, cycles, clock)];
         let path = self.out.join("sponge.png");
         let cycles = self.sponge(&mut renderer, &path)?;
         let towards = format!("{} frames towards {SPONGE}, for two eyes", self.sponge);
-        lines.push(line(&path, &towards, SIZE, cycles, clock));
+        lines.push(line(&path, &towards, cycles, clock));
         for name in SCENES {
             let path = self.out.join(name).with_extension("png");
             let (scene, cycles) = show_scene(&mut renderer, name, &path)?;
-            lines.push(line(&path, &scene, SIZE, cycles, clock));
+            lines.push(line(&path, &scene, cycles, clock));
         }
         Ok((rows, lines))
     }
@@ -184,9 +251,9 @@ impl DemoArguments {
         (name, model): &Named,
         number: u32,
     ) -> anyhow::Result<Row> {
-        let (start, start_cycles) = (Instant::now(), renderer.board().inner().cycles());
-        let subject = Subject::mesh(Mesh::new_checked(&model.mesh)?);
-        let frame = Frame::new(subject, camera(azimuth(number))?, SIZE);
+        let mesh = Mesh::new_checked(&model.mesh)?;
+        let view = model_view(mesh, [azimuth(number)].into_iter())?[0];
+        let frame = frame(Subject::mesh(mesh), view);
         let stats = renderer.show(&frame)?;
         let picture = renderer.board().inner().capture()?;
         let path = self.out.join(file_stem(name)).with_extension("png");
@@ -197,26 +264,32 @@ impl DemoArguments {
             picture.scaled_back(scale)? == on_model(&frame)?.image.colour,
             "{name}: the picture on the monitor differs from the model's"
         );
-        let cycles = renderer.board().inner().cycles() - start_cycles;
         Ok(Row {
             number,
             picture: path,
             stats,
-            cpu_cycles: None,
-            cycles_per_second: cycles as f64 / start.elapsed().as_secs_f64(),
+            triangles: mesh.triangle_count() as u32,
         })
     }
 
-    /// Writes an animation of one turn of the camera around the current model to `path`. Returns the mean number of cycles of a
-    /// frame.
-    fn orbit<B: Board>(&self, renderer: &mut BoardRenderer<B>, path: &Path) -> anyhow::Result<u64> {
-        let console = renderer.console();
-        console.command("backend gateware")?;
-        console.command(&size_command(ORBIT_SIZE))?;
+    /// Writes an animation of one turn of the camera around a model to `path`. Returns the mean number of cycles of a frame.
+    fn orbit<B: Board>(
+        &self,
+        renderer: &mut BoardRenderer<B>,
+        model: &Model,
+        path: &Path,
+    ) -> anyhow::Result<u64> {
+        let mesh = Mesh::new_checked(&model.mesh)?;
         let mut film = Film::default();
-        for view in turn(&camera(Turns(0))?, self.orbit)? {
-            let stats = renderer.look(&view)?;
-            film.add(&stats, renderer.image(ORBIT_SIZE)?)?;
+        for (number, view) in model_view(mesh, angles(self.orbit))?
+            .into_iter()
+            .enumerate()
+        {
+            let stats = match number {
+                0 => renderer.show(&frame(Subject::mesh(mesh), view))?,
+                _ => renderer.look(&view)?,
+            };
+            film.add(&stats, renderer.image(SIZE)?)?;
         }
         film.write(path, ORBIT_FRAMES_PER_SECOND)
     }
@@ -228,7 +301,6 @@ impl DemoArguments {
         renderer: &mut BoardRenderer<B>,
         path: &Path,
     ) -> anyhow::Result<u64> {
-        let lens = camera(Turns(0))?;
         let subject = FieldSubject {
             field: &SPONGE,
             appearance: &Appearance::default(),
@@ -240,10 +312,10 @@ impl DemoArguments {
             let between = |from: f64, to: f64| format!("{:.3}", from + (to - from) * part);
             // The camera's distance in world units, and azimuth and polar angle in degrees.
             let place = [between(3.2, 2.2), between(15.0, 60.0), between(80.0, 55.0)];
-            let view = view::spherical(&place.join(","))?.with_lens_of(&lens);
+            let view = view::spherical(&place.join(","))?.with_half_width(HALF_WIDTH)?;
             let frame = Frame {
                 stereo: Some(EYES),
-                ..Frame::new(Subject::Field(subject), view, SIZE)
+                ..frame(Subject::Field(subject), view)
             };
             let Rendered { image, stats } = renderer.render(&frame, Parts::COLOUR)?;
             anyhow::ensure!(
@@ -288,13 +360,14 @@ fn cycles_of_gateware(stats: &Stats) -> anyhow::Result<u64> {
     Ok(stats.cycles.unwrap_or_default())
 }
 
-/// Rejects a folder that already contains pictures, unless they may be replaced.
+/// Rejects a folder that already contains pictures besides the first one, unless they may be replaced.
 fn check_folder(folder: &Path) -> anyhow::Result<()> {
     let files = folder.read_dir();
     let files = files.with_context(|| format!("{}: cannot be read", folder.display()))?;
     for file in files {
         let path = file?.path();
-        if path.extension().is_some_and(|extension| extension == "png") {
+        let is_picture = path.extension().is_some_and(|extension| extension == "png");
+        if is_picture && !path.ends_with(FIRST) {
             // The error message of `Output` states how to replace files.
             Output::open(&path, PICTURE, [""; 0])?;
         }
@@ -309,6 +382,21 @@ fn write_picture(
     Output::open(path, PICTURE, [""; 0])?.write(write)
 }
 
+/// A frame of the demo's pictures.
+fn frame(subject: Subject, view: View) -> Frame {
+    Frame {
+        samples: SAMPLES,
+        sky: Background::Gradient.gradient(),
+        ..Frame::new(subject, view, SIZE)
+    }
+}
+
+/// The cameras that show a whole mesh, `turned` about the z axis.
+fn model_view(mesh: Mesh, turned: impl Iterator<Item = Turns>) -> anyhow::Result<Vec<View>> {
+    let meshes = [(mesh, Matrix::IDENTITY)];
+    Ok(whole(meshes.into_iter(), Axis::Z, turned, None)?)
+}
+
 /// Draws a built-in scene on the board with flat shading, which every gateware build has, checks that its picture equals the
 /// picture of the bit-exact model, and writes it to `path`. Returns a description of the picture and the number of cycles of the frame.
 fn show_scene<B: Board>(
@@ -318,11 +406,17 @@ fn show_scene<B: Board>(
 ) -> anyhow::Result<(String, u64)> {
     let scene = super::scene::read(name)?;
     let show = format!("scene {name}");
-    let commands = [show, "shading flat".into(), size_command(SIZE)];
+    let commands = [
+        show,
+        "shading flat".into(),
+        size_command(SIZE),
+        samples_command(SAMPLES),
+    ];
     let Rendered { image, stats } = renderer.render_after(&commands, SIZE, Parts::COLOUR)?;
     let changes = Changes {
         shading: Some(Shading::Flat),
         size: Some(SIZE),
+        samples: Some(SAMPLES),
         ..Changes::default()
     };
     let expected = scene::draw(&scene, &changes, on_model)??;
@@ -340,39 +434,26 @@ fn show_scene<B: Board>(
 
 /// Formats the summary line of an animation or a scene; `cycles` is the mean number of cycles of a frame, and `clock` the
 /// frequency of the board's clock in Hz.
-fn line(path: &Path, what: &str, size: Size, cycles: u64, clock: u32) -> String {
+fn line(path: &Path, what: &str, cycles: u64, clock: u32) -> String {
     let clock = f64::from(clock);
     format!(
-        "{}: {what}, {size}, by the gateware in {cycles} cycles each: {:.0} frames a second at {} MHz",
+        "{}: {what}, by the gateware in {cycles} cycles each: {:.0} frames a second at {} MHz",
         path.display(),
         clock / cycles as f64,
         clock / 1e6
     )
 }
 
-/// Azimuth of the camera for the picture of model `number`, so that each model is seen from a
-/// different side.
+/// The angle by which the camera is turned for the picture of model `number`, so that each model is seen from a different side.
 fn azimuth(number: u32) -> Turns {
-    Turns::from_degrees(Q32_32::from_num(number * 50 + 30))
+    Turns::from_degrees(Q32_32::from_num(number * 50))
 }
 
 /// The built-in scenes of the demo.
 const SCENES: [&str; 3] = ["objects", "simplegpu", "wireframe"];
 
-const DISTANCE: u32 = 2;
-const POLAR_DEGREES: u32 = 60;
-
-/// Half of the picture's width at distance 1, in world units. With this value most models nearly
-/// fill the height of the picture.
+/// Half of the picture's width at distance 1, in world units, for the sponge.
 const HALF_WIDTH: U8_28 = U8_28::lit("0.6");
-
-/// The demo's camera at `azimuth`.
-fn camera(azimuth: Turns) -> anyhow::Result<View> {
-    let polar = Turns::from_degrees(Q32_32::from_num(POLAR_DEGREES));
-    View::spherical(Q32_32::from_num(DISTANCE), azimuth, polar)
-        .and_then(|view| view.with_half_width(HALF_WIDTH))
-        .map_err(anyhow::Error::msg)
-}
 
 /// Boots a board from reset: the BIOS, its serial boot, then the firmware up to its prompt. Returns the firmware's console.
 fn boot<'b>(
@@ -413,35 +494,23 @@ fn file_stem(name: &str) -> String {
 }
 
 fn print_table(rows: &[Row]) -> anyhow::Result<()> {
-    say(
-        "                                        cycles a frame     speed-up     frames  simulated",
-    )?;
-    say(
-        "picture                triangles   gateware   soft core               a second   cycles/s",
-    )?;
+    say(format_args!(
+        "Pictures of {SIZE} with {SAMPLES} samples a pixel, by the gateware of the virtual board:\n"
+    ))?;
+    say("                                        cycles     frames")?;
+    say("picture                triangles       a frame   a second")?;
     for Row {
         picture,
         stats,
-        cpu_cycles,
-        cycles_per_second,
+        triangles,
         ..
     } in rows
     {
         let cycles = stats.cycles.unwrap_or_default();
         let rate = stats.clock.unwrap_or_default() as f64 / cycles as f64;
-        let (by_cpu, speed_up) = match cpu_cycles {
-            Some(by_cpu) => (
-                by_cpu.to_string(),
-                format!("{:.0}x", *by_cpu as f64 / cycles as f64),
-            ),
-            None => ("-".to_owned(), "-".to_owned()),
-        };
         say(format_args!(
-            "{:<23}{:>9}{:>11}{by_cpu:>12}{speed_up:>12}{rate:>11.0}{:>11.0}",
+            "{:<23}{triangles:>9}{cycles:>14}{rate:>11.0}",
             picture.display(),
-            stats.triangles().triangles_in,
-            cycles,
-            cycles_per_second
         ))?;
     }
     Ok(())
@@ -462,9 +531,6 @@ mod tests {
             .with_backend(Backend::Gateware)
             .with_route(Route::Memory);
         let model = load("teapot", Options::default()).unwrap();
-        let subject = Subject::mesh(Mesh::new_checked(&model.mesh).unwrap());
-        let frame = Frame::new(subject, camera(azimuth(0)).unwrap(), SIZE);
-        renderer.show(&frame).unwrap();
 
         let folder = tempfile::tempdir().unwrap();
         let tour = DemoArguments {
@@ -473,9 +539,11 @@ mod tests {
             firmware: None,
             orbit: 2,
             sponge: 2,
+            first: false,
         };
         let path = |name: &str| folder.path().join(name);
-        tour.orbit(&mut renderer, &path("orbit.png")).unwrap();
+        tour.orbit(&mut renderer, &model, &path("orbit.png"))
+            .unwrap();
         tour.sponge(&mut renderer, &path("sponge.png")).unwrap();
         for name in SCENES {
             let path = path(&format!("{name}.png"));
