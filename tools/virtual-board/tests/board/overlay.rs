@@ -103,6 +103,7 @@ fn text(frame: &[u16], line: usize) -> String {
 fn the_overlay_says_what_is_shown_and_goes_again() {
     let (mut board, _) = emulated(&image());
     // A background that is neither black nor white, the colours of the text.
+    command(&mut board, "size 320 180");
     command(&mut board, "field box:0.5,0.5,0.5");
     command(&mut board, "background sky");
     command(&mut board, "render");
