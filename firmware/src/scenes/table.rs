@@ -85,7 +85,6 @@ field box:0.35,0.35,0.35
         &[feature::ANTIALIASING, feature::LIGHT, feature::MESH, feature::OBJECT, feature::SKY, feature::VIEW],
         "\
 quality balanced
-background gradient
 camera 2.2 20 70
 light 3,-1,2,fff0d8
 ambient 000000
@@ -95,6 +94,7 @@ object add torus scale 1.5,1.5,0.8 rotate x 25 rotate y 15
 object add sphere scale 0.35,0.35,0.7 rotate x -30 move 0.1,1.05,0.2
 object add cylinder scale 0.5,0.5,0.6 rotate x -25 move -0.1,-1.1,0.15
 object add torus scale 0.45,-0.45,0.7 rotate y 75 rotate z 40 move 0.5,0.65,-0.15
+background gradient
 ",
     ),
     // Poor Man's VR: a Menger sponge for two eyes, seen in the direction of the motion sensor

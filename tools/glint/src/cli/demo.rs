@@ -268,7 +268,7 @@ impl DemoArguments {
             number,
             picture: path,
             stats,
-            triangles: mesh.triangle_count() as u32,
+            triangles: mesh.triangle_count(),
         })
     }
 

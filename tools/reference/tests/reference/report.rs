@@ -444,15 +444,16 @@ fn the_committed_pictures_of_fields_hold() {
     }
 }
 
-/// Draws the frames of the fast and of the exact quality of quality.csv again, and compares their errors with the committed errors.
-/// Frames of the exact quality differ from the reference only along edges, and by the rounding of colours.
+/// Draws the frames of two scenes of quality.csv again, and compares their errors with the committed errors. Frames of the exact quality
+/// differ from the reference only along edges, and by the rounding of colours.
 #[test]
 fn the_committed_errors_of_qualities_hold() {
     let rows: Vec<quality::Row> = committed("quality.csv");
-    let now = quality::errors("", |quality| quality != Quality::Balanced);
-    let now = now.expect("built-in scenes");
-    assert_eq!(now.len(), 2 * quality::scenes("").count());
-    for now in now {
+    assert_eq!(rows.len(), 3 * quality::scenes("").count());
+    for now in ["simplegpu", "wireframe"].into_iter().flat_map(|scene| {
+        let now = quality::errors(scene, |_| true);
+        now.expect("a built-in scene")
+    }) {
         let same = |row: &&quality::Row| (&row.scene, row.width) == (&now.scene, now.width);
         let row = rows.iter().find(same).expect("a committed row");
         let name = |column| format!("quality.csv: {column} of {} {}", row.scene, row.width);

@@ -9,6 +9,7 @@ use glint_model::Frame;
 use glint_scene_file::{NAMES, SceneFile, built_in};
 use serde::{Deserialize, Serialize};
 
+use crate::picture::averaged::{Averaged, grid};
 use crate::picture::exact::Exact;
 use crate::picture::{self, Measured};
 use crate::report::progress;
@@ -40,6 +41,9 @@ pub struct Cycles {
     pub cycles: u64,
 }
 
+/// Samples in a line of a pixel of the reference for colours, and lines of samples.
+const ACROSS: u32 = 8;
+
 /// The changes of a scene to a quality.
 fn of(quality: Quality) -> Changes {
     Changes {
@@ -58,16 +62,19 @@ pub fn scenes(only: &str) -> impl Iterator<Item = SceneFile> {
     })
 }
 
-/// Measures the errors of the scenes whose names contain `only`, in the qualities that are `wanted`.
+/// Measures the errors of the scenes whose names contain `only`, in the qualities that are `wanted`: wrong pixels at their centres, and colours
+/// against the mean of 64 samples.
 ///
 /// # Errors
 /// A scene cannot be drawn.
 pub fn errors(only: &str, wanted: impl Fn(Quality) -> bool) -> Result<Vec<Row>> {
     let mut rows = Vec::new();
     for scene in scenes(only) {
-        let exact = scene::draw(&scene, &Changes::default(), Exact::new)??;
+        let (exact, mean) = scene::draw(&scene, &Changes::default(), |frame| {
+            anyhow::Ok((Exact::new(frame)?, Averaged::new(frame, &grid(ACROSS))?))
+        })??;
         for quality in Quality::ALL.into_iter().filter(|&one| wanted(one)) {
-            let measure = |frame: &Frame| picture::measure(frame, &exact);
+            let measure = |frame: &Frame| picture::measure(frame, &exact, &mean);
             let Measured { wrong, colour } = scene::draw(&scene, &of(quality), measure)??;
             rows.push(Row {
                 scene: scene.name().to_owned(),
