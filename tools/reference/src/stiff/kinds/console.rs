@@ -48,7 +48,11 @@ pub struct Session {
     pub lines: Vec<String>,
 }
 
-/// Starts a board with this sensor, and executes these commands and a wait in milliseconds.
+/// Commands before those of a case: pictures that take little time.
+const SMALL: [&str; 2] = ["size 320 180", "aa 1"];
+
+/// Starts a board with this sensor, which draws small pictures with one sample a pixel, and executes these commands and a wait in
+/// milliseconds.
 fn board_after(sensor: Option<Sensor>, commands: &[String], wait: u64) -> Result<Emulated> {
     let mut board = start()?;
     if let Some(sensor) = sensor {
@@ -56,6 +60,9 @@ fn board_after(sensor: Option<Sensor>, commands: &[String], wait: u64) -> Result
     }
     let mut console = Console::new(&mut board);
     console.greet()?;
+    for command in SMALL {
+        console.command(command)?;
+    }
     for command in commands {
         // A refused command may be part of the case.
         let _ = console.command(command);
