@@ -7,14 +7,15 @@ use glint::transfer::download;
 use glint_core::picture::Size;
 use tungstenite::Message;
 
-const SCENE: &str = "scene cube";
+/// Makes the start scene small.
+const COMMAND: &str = "quality fast";
 
-/// The pixels that a board without a page sends for the scene.
+/// The pixels that a board without a page sends after the command.
 fn expected() -> Vec<u8> {
     let mut board = board::emulated(&built_firmware(None).unwrap()).unwrap();
     let mut console = Console::new(&mut board);
     console.synchronise().unwrap();
-    console.command(SCENE).unwrap();
+    console.command(COMMAND).unwrap();
     let length = 2 * Size::W320.pixel_count();
     download(&mut console, "frame", length, &mut |_, _| {}).unwrap()
 }
@@ -27,7 +28,7 @@ fn the_picture_of_a_board_on_a_serial_port_is_fetched() {
     let board = wait_for(&mut socket, r#""type":"board""#);
     assert!(board.contains(r#""has_pins":false"#), "{board}");
     wait_for(&mut socket, r#""holder":"you""#);
-    let command = format!(r#"{{"type":"command","line":"{SCENE}"}}"#);
+    let command = format!(r#"{{"type":"command","line":"{COMMAND}"}}"#);
     for text in [command.as_str(), r#"{"type":"picture"}"#] {
         socket.send(Message::text(text)).unwrap();
     }
