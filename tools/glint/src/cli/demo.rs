@@ -27,7 +27,7 @@ use glint_core::colour::Shading;
 use glint_core::field::{Field, Menger, Primitive};
 use glint_core::fixed::{Q32_32, Turns, U8_28};
 use glint_core::light::Background;
-use glint_core::matrix::{Axis, Matrix};
+use glint_core::matrix::Matrix;
 use glint_core::mesh::Mesh;
 use glint_core::picture::{Backend, Samples, Size};
 use glint_core::quality::Quality;
@@ -149,7 +149,7 @@ impl DemoArguments {
                     shading,
                     ..MeshSubject::new(mesh)
                 });
-                let frame = frame(subject, model_view(mesh, [azimuth(0)].into_iter())?[0]);
+                let frame = frame(subject, view_of(&model, 0)?);
                 (name.clone(), on_model(&frame)?)
             }
             None => {
@@ -184,7 +184,7 @@ impl DemoArguments {
         let row = self.show(&mut renderer, model, 0)?;
         bar.finish();
         let _waiting = spinner("the soft core draws a frame");
-        let view = model_view(Mesh::new_checked(&model.1.mesh)?, [azimuth(0)].into_iter())?[0];
+        let view = view_of(&model.1, 0)?;
         let mut cycles = |backend| {
             let commands = [
                 format!("backend {backend}"),
@@ -252,7 +252,7 @@ impl DemoArguments {
         number: u32,
     ) -> anyhow::Result<Row> {
         let mesh = Mesh::new_checked(&model.mesh)?;
-        let view = model_view(mesh, [azimuth(number)].into_iter())?[0];
+        let view = view_of(model, number)?;
         let frame = frame(Subject::mesh(mesh), view);
         let stats = renderer.show(&frame)?;
         let picture = renderer.board().inner().capture()?;
@@ -281,10 +281,7 @@ impl DemoArguments {
     ) -> anyhow::Result<u64> {
         let mesh = Mesh::new_checked(&model.mesh)?;
         let mut film = Film::default();
-        for (number, view) in model_view(mesh, angles(self.orbit))?
-            .into_iter()
-            .enumerate()
-        {
+        for (number, view) in views(model, angles(self.orbit))?.into_iter().enumerate() {
             let stats = match number {
                 0 => renderer.show(&frame(Subject::mesh(mesh), view))?,
                 _ => renderer.look(&view)?,
@@ -391,10 +388,16 @@ fn frame(subject: Subject, view: View) -> Frame {
     }
 }
 
-/// The cameras that show a whole mesh, `turned` about the z axis.
-fn model_view(mesh: Mesh, turned: impl Iterator<Item = Turns>) -> anyhow::Result<Vec<View>> {
-    let meshes = [(mesh, Matrix::IDENTITY)];
-    Ok(whole(meshes.into_iter(), Axis::Z, turned, None)?)
+/// The cameras that show a whole model, `turned` about its up axis.
+fn views(model: &Model, turned: impl Iterator<Item = Turns>) -> anyhow::Result<Vec<View>> {
+    let meshes = [(Mesh::new_checked(&model.mesh)?, Matrix::IDENTITY)];
+    Ok(whole(meshes.into_iter(), model.up, turned, None)?)
+}
+
+/// The camera that shows model `number`.
+fn view_of(model: &Model, number: u32) -> anyhow::Result<View> {
+    let views = views(model, [azimuth(number)].into_iter())?;
+    views.first().copied().context("no vertex")
 }
 
 /// Draws a built-in scene on the board with flat shading, which every gateware build has, checks that its picture equals the
