@@ -7,6 +7,7 @@ use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use glint_core::picture::Samples;
 use glint_core::quality::Quality;
 use glint_reference::report::cycles::{Cycles, Source};
 use glint_reference::report::experiments::{
@@ -60,7 +61,7 @@ enum Page {
         #[arg(long)]
         quick: bool,
         /// Measure only one table
-        #[arg(long, value_name = "NAME", conflicts_with = "quick", value_parser = ["pictures", "rates", "words", "fillet"])]
+        #[arg(long, value_name = "NAME", conflicts_with = "quick", value_parser = ["pictures", "rates", "scenes", "words", "fillet"])]
         study: Option<String>,
         /// Measure only the rates of fields whose text contains TEXT
         #[arg(long, value_name = "TEXT", requires = "study")]
@@ -381,6 +382,12 @@ fn measure_raymarch(
             &raymarch::rates::measure(only.unwrap_or_default())?,
         )?;
     }
+    if study.map_or(!quick, |study| study == "scenes") {
+        let scenes = quality::scenes(only.unwrap_or_default());
+        let fields = scenes.filter(|scene| scene.scene().shows_field());
+        let cycles = quality::cycles(fields, Some(Samples::One))?;
+        to.write_with_commit("raymarch-scenes", &cycles)?;
+    }
     if study.map_or(!quick, |study| study == "words") {
         to.write_with_commit("raymarch-words", &raymarch::words::measure()?)?;
     }
@@ -418,7 +425,8 @@ fn measure_quality(
         to.write("quality", &quality::errors(only, wanted)?)?;
     }
     if study != Some("errors") && !quick {
-        to.write_with_commit("quality-cycles", &quality::cycles(only)?)?;
+        let cycles = quality::cycles(quality::scenes(only), None)?;
+        to.write_with_commit("quality-cycles", &cycles)?;
     }
     Ok(())
 }

@@ -60,7 +60,10 @@ pub fn frame_on(
     let size = changes.size.unwrap_or(scene.size());
     let quality = changes.quality.map(|quality| format!("quality {quality}"));
     let lines = scene.settings().iter().cloned().chain(quality);
-    let lines: Vec<String> = lines.chain([render::size_command(size)]).collect();
+    let lines = lines.chain([render::size_command(size)]);
+    let lines: Vec<String> = lines
+        .chain(changes.samples.map(render::samples_command))
+        .collect();
     let Rendered { image, stats } = renderer.render_after(&lines, size, Parts::COLOUR)?;
     ensure!(
         stats.backend.as_deref() == Some("gateware"),

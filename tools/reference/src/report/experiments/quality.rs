@@ -4,6 +4,7 @@
 use anyhow::{Context, Result};
 use glint::board::built_firmware;
 use glint::scene::{self, Changes};
+use glint_core::picture::Samples;
 use glint_core::quality::Quality;
 use glint_model::Frame;
 use glint_scene_file::{NAMES, SceneFile, built_in};
@@ -30,7 +31,7 @@ pub struct Row {
     pub colour: f64,
 }
 
-/// Cycles of a frame: a line of `quality-cycles.csv`.
+/// Cycles of a frame: a line of `quality-cycles.csv` and `raymarch-scenes.csv`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Cycles {
     /// Name of the scene.
@@ -88,20 +89,28 @@ pub fn errors(only: &str, wanted: impl Fn(Quality) -> bool) -> Result<Vec<Row>> 
     Ok(rows)
 }
 
-/// Measures the cycles of the frames of the scenes whose names contain `only`, on two virtual boards at a time.
+/// Measures the cycles of the frames of scenes in all qualities, with this number of samples a pixel or by default that of the quality, on two
+/// virtual boards at a time.
 ///
 /// # Errors
 /// A board is not built, or a frame differs from the model's.
-pub fn cycles(only: &str) -> Result<Vec<Cycles>> {
+pub fn cycles(
+    scenes: impl Iterator<Item = SceneFile>,
+    samples: Option<Samples>,
+) -> Result<Vec<Cycles>> {
     let firmware = built_firmware(None)?;
-    let scenes: Vec<SceneFile> = scenes(only).collect();
+    let scenes: Vec<SceneFile> = scenes.collect();
     let bar = progress::bar((scenes.len() * Quality::ALL.len()) as u64)?;
     let rows = soc::two_at_a_time(&scenes, |scene| {
         bar.set_message(format!("{} on the SoC", scene.name()));
         let mut rows = Vec::new();
         for quality in Quality::ALL {
             let name = format!("{}, {}", scene.name(), quality.name());
-            let stats = soc::frame(&firmware, scene, &of(quality));
+            let changes = Changes {
+                samples,
+                ..of(quality)
+            };
+            let stats = soc::frame(&firmware, scene, &changes);
             let cycles = stats.and_then(|stats| stats.cycles.context("no cycles in the reply"));
             let cycles = cycles.with_context(|| name.clone())?;
             bar.suspend(|| eprintln!("{name}: {cycles} cycles"));
