@@ -86,16 +86,17 @@ def root_mean_square(values):
 
 
 def antialiasing(errors):
-    """Errors of each scene, and their RMS in the last row, in columns such as `colour_4` and, without dithering, `colour_4_off`. The RMS of
-    errors along edges leaves out the wireframe, whose lines are a sample wide."""
+    """Errors of each scene, and their RMS in the last row, in columns such as `colour_4` and, without dithering, `colour_4_off`."""
     way = errors.samples.astype(str) + np.where(errors.dithered, "", "_off")
     found = errors.assign(way=way).pivot(index="scene", columns="way", values=["colour", "edges"])
     found.columns = ["_".join(column) for column in found.columns]
-    edges = found.filter(like="edges").columns
-    total = root_mean_square(found)
-    total[edges] = root_mean_square(found.drop(index="wireframe", errors="ignore")[edges])
-    found.loc["all"] = total
+    found.loc["all"] = root_mean_square(found)
     return found.join(errors.groupby("scene").share.first()).reset_index()
+
+
+def before(errors):
+    """RMS of the scenes of the errors before antialiasing and dithering, and of those after it."""
+    return root_mean_square(errors[["before", "dithered", "nearest"]])
 
 
 def samples(errors, cycles):
@@ -118,7 +119,7 @@ def patterns(errors):
         return chosen.groupby(["pattern", "samples"], sort=False)[column].agg(root_mean_square)
 
     found = errors.groupby(["pattern", "samples"], sort=False).shipped.first().to_frame()
-    found = found.assign(colour=of("colour", errors), edges=of("edges", errors.query("scene != 'wireframe'"))).reset_index()
+    found = found.assign(colour=of("colour", errors), edges=of("edges", errors)).reset_index()
     return found.assign(family=found.pattern.replace("centre", "grid"), label=found.pattern)
 
 
