@@ -4,7 +4,7 @@ use glint_core::block::Block;
 use glint_core::console::{Command, ObjectAction, OptionName, Setting};
 use glint_core::mesh::Mesh;
 use glint_core::object::Place;
-use glint_core::picture::Size;
+use glint_core::picture::{Samples, Size};
 use glint_core::quality::Quality;
 use glint_core::words::Words;
 use glint_scene::{AnyBoard, Board, Defaults, Kind, Reason, Scene};
@@ -107,6 +107,7 @@ fn line() -> impl Strategy<Value = String> {
             "stereo off",
             "aa 1",
             "aa 4",
+            "aa default",
             "edges over",
             "edges hidden",
             "edges off",
@@ -114,6 +115,7 @@ fn line() -> impl Strategy<Value = String> {
             "ambient default",
             "ambient 102030",
             "background sky",
+            "background gradient",
             "background default",
             "background 405060",
             "shadow on",
@@ -356,4 +358,46 @@ fn other_lines_are_no_scene() {
         (line, is_effect) == (2, false) && text.starts_with("line 2: fov: "),
         "{text}"
     );
+}
+
+/// A pixel has four samples where the gateware draws about 60 frames per second, unless a number is set; a quality sets its number, and
+/// `aa default` the board's.
+#[test]
+fn the_samples_follow_from_the_scene() {
+    for (text, samples, has_depths) in [
+        ("", Samples::Four, false),
+        ("aa 1", Samples::One, true),
+        ("aa 1\naa default", Samples::Four, false),
+        ("backend cpu", Samples::One, true),
+        ("backend cpu\naa 4", Samples::Four, false),
+        ("stereo 0.1,3", Samples::One, true),
+        ("field menger:2", Samples::One, true),
+        ("field menger:2\nsize 640 360", Samples::Four, false),
+        ("field menger:2\nquality exact", Samples::Four, false),
+        ("quality fast", Samples::One, true),
+        ("quality exact\nquality balanced", Samples::Four, false),
+    ] {
+        let scene = scene(text);
+        assert_eq!(scene.samples(), samples, "{text}");
+        assert_eq!(scene.has_depths(), has_depths, "{text}");
+    }
+    let board = Defaults {
+        samples: Samples::One,
+        ..Defaults::GATEWARE
+    };
+    assert_eq!(Scene::new(board).expect("a camera").samples(), Samples::One);
+}
+
+/// A reset keeps the backend, and gives the soft core its smaller size.
+#[test]
+fn a_reset_restores_the_size_of_the_backend() {
+    for (text, size) in [
+        ("size 640 360", Size::W1280),
+        ("size 640 360\nbackend cpu", Size::W320),
+    ] {
+        let mut scene = scene(text);
+        let backend = scene.backend;
+        scene.reset().expect("a camera in range");
+        assert_eq!((scene.size, scene.backend), (size, backend), "{text}");
+    }
 }

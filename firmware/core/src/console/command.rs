@@ -172,7 +172,7 @@ commands! {
             => key(Order::Size, "gateware");
         shading Shading(shading: Shading) or show in MESH: "show or set the shading: flat (one colour per triangle) or smooth (interpolated)"
             => key(Order::Option, "smooth").with(MESHES)
-                .host(option("shading", "SHADING", "Source of a mesh's colours: `flat` (triangles), or `smooth` (vertices, interpolated) [default: flat]"));
+                .host(option("shading", "SHADING", "Source of a mesh's colours: `flat` (triangles), or `smooth` (vertices, interpolated) [default: flat; by the model smooth, if the file has a normal for each corner]"));
         cull Cull(on: bool) in MESH: "turn culling of back faces on or off"
             => key(Order::Option, "off").with(MESHES)
                 .host(switch("no-cull", "off", "Draw back faces too"));
