@@ -1,6 +1,6 @@
 //! Frames with four samples a pixel, which every renderer draws as the model does.
 
-use crate::common::{emulator, mesh, plain, renderer, running_board, sky, two_objects};
+use crate::common::{counts, emulator, mesh, plain, renderer, running_board, sky, two_objects};
 use glint::board::Board;
 use glint::render::{BoardRenderer, FieldSubject, Frame, MeshSubject, Parts, Subject, on_model};
 use glint::view;
@@ -34,6 +34,7 @@ fn check<B: Board>(
         "{name}"
     );
     assert!(found.image.colour == expected.image.colour, "{name}");
+    assert_eq!(counts(&found.stats), counts(&expected.stats), "{name}");
 }
 
 /// Meshes flat, smooth, cut at the guard band, with edges, before a sky and in fog; objects, fields, a mesh in a field, and two eyes; by
