@@ -39,7 +39,7 @@ fn fields_and_their_files() {
     let hits = depth.iter().filter(|z| z.is_finite()).count();
     assert_eq!(hits as u64, number("hits"));
 
-    let eyes = "--view far.json --size 320x180 --stereo 0.05,18 --json";
+    let eyes = "--view far.json --size 320x180 --aa 1 --stereo 0.05,18 --json";
     let (two, said) = render("box:0.5,0.5,0.25", eyes);
     assert_ne!(one, two);
     assert!(
@@ -56,7 +56,7 @@ fn fields_and_their_files() {
     assert_eq!(error, "error: --light: expected at most 4 lights, found 5");
     // One blue light from above and no ambient light: the box's top is blue, its other sides are black, and the background is
     // white.
-    let blue = "--material ivory --light 0,0,1,0000ff --ambient 000000 --no-dither";
+    let blue = "--material ivory --light 0,0,1,0000ff --ambient 000000 --no-dither --aa 1";
     let (lit, _) = render("box:1,1,1", blue);
     let mut colours: Vec<&[u8]> = lit.chunks_exact(3).collect();
     colours.sort_unstable();
@@ -169,7 +169,7 @@ fn warnings_of_pictures_that_show_nothing() {
 fn undecided_rays_have_the_colour_of_the_horizon() {
     let folder = folder("undecided");
     let render = |more: &str| {
-        let field = "render --field smooth:0.01,box:8,8,0.01+sphere:0.01 --look-at=-7.5,0,0.0225,1,0,0 --background 000000 --stats a.json";
+        let field = "render --field smooth:0.01,box:8,8,0.01+sphere:0.01 --look-at=-7.5,0,0.0225,1,0,0 --background 000000 --size 320x180 --aa 1 --stats a.json";
         let picture = drawn(&folder, &format!("{field} {more}"));
         let undecided = json(&folder.join("a.json"))["undecided"].as_u64().unwrap();
         (picture, undecided as usize)
