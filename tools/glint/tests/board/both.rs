@@ -2,7 +2,7 @@
 //! depths, the position of a hand and the exact counts are equal.
 
 use crate::common::{
-    console, emulator, emulator_with, mesh, plain, renderer, running_board, two_objects,
+    emulator, emulator_with, mesh, plain, renderer, running_board, small, two_objects,
 };
 use glint::board::{SimulatedBoard, Simulation};
 use glint::console::value;
@@ -100,7 +100,7 @@ fn found<S: Simulation>(mut board: SimulatedBoard<S>) -> [String; 3] {
     };
     let scene = Scene::new([320, 240], move |_| vec![hand]);
     board.inner().plug_image_sensor(image_sensor(scene));
-    let mut console = console(&mut board);
+    let mut console = small(&mut board);
     console.command("gesture on").unwrap();
     let cycles = u64::from(console.board().inner().clock_hz()) / 50;
     console.board().inner().run(cycles);
