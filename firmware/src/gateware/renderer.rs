@@ -22,9 +22,9 @@ use litex_pac::cpu;
 use super::buffers::{Buffers, Capacity, Projected, address};
 use super::fallback::Fallback;
 use super::geometry::{Cpu, GeometryPasses, Job};
+use super::quarters::Quarters;
 use super::rendered::Rendered;
 use super::watchdog::Watchdog;
-use quarters::Quarters;
 
 /// The output memory of a frame.
 pub struct Output<'a> {

@@ -11,46 +11,14 @@
 use core::mem;
 
 use glint_core::picture::Quarter;
-use glint_hal::triangle::TriangleEngine;
-use glint_model::{Frame, Stats};
+use glint_model::Frame;
 use litex_pac::cpu;
 
 use super::{GatewareRenderer, Output, Stage};
 use crate::gateware::fallback::Fallback;
 use crate::gateware::geometry::Cpu;
+use crate::gateware::quarters::Quarters;
 use crate::gateware::rendered::Rendered;
-
-/// Progress of a frame that is drawn in quarters.
-#[derive(Default)]
-pub struct Quarters {
-    /// Number of quarters that have been drawn or, if passes overlap, whose raster pass has been started.
-    count: usize,
-    /// The cost of the drawn quarters of lines.
-    rendered: Option<Rendered>,
-    /// Triangle counts of the quarters whose raster pass has been started, except the last of them.
-    triangles: Stats,
-    /// Whether the lists of quarter `count` are complete.
-    is_listed: bool,
-    /// Whether a raster pass runs.
-    rasters: bool,
-}
-
-impl Quarters {
-    /// Whether a quarter of lines has been drawn, and others follow.
-    pub const fn has_drawn(&self) -> bool {
-        self.rendered.is_some()
-    }
-
-    /// Whether one of the running passes has ended.
-    pub fn is_ready(&self, engine: &TriangleEngine) -> bool {
-        self.lists() && engine.geometry().is_some() || self.rasters && engine.raster().is_some()
-    }
-
-    /// Whether geometry passes run.
-    const fn lists(&self) -> bool {
-        !self.is_listed && self.count < Quarter::ALL.len()
-    }
-}
 
 /// Quarter `number` of a frame; for a larger number, the last quarter.
 fn quarter_of<'a>(frame: &Frame<'a>, number: usize) -> Frame<'a> {
