@@ -45,7 +45,8 @@ pub fn page(name: &str, arguments: &[String]) -> Result<()> {
 
 /// Builds the gateware that the page `name` needs beside the virtual board. `raymarch`: a SoC with four lanes for lattices, and the
 /// raymarcher without a SoC. `gouraud`: the rasterizer. `quality` and `timeline`: the SoC with smooth shading.
-/// `antialiasing`: that, and the SoC with textures and fog. `textures`: the SoC with textures. `cpu`: the SoC with each variant of the CPU, and the firmware of each.
+/// `antialiasing`: that, and the SoC with textures and fog. `textures`: the SoC with textures. `cpu`: the SoC with each variant of the CPU,
+/// and the firmware of each.
 fn build_parts(name: &str) -> Result<()> {
     match name {
         "raymarch" => {

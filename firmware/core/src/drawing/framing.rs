@@ -134,7 +134,7 @@ impl BoundingSphere {
 }
 
 /// Sets the half width of the image plane of cameras whose eyes are outside of the sphere around placed meshes: the smallest with which all
-/// vertices, in the pictures of all cameras, are within the middle 90 % of width and height.
+/// vertices, in the pictures of all cameras, are within the middle 90 % of width and height; rounding leaves them within 90.01 %.
 ///
 /// A mesh that is too small for this fills less.
 ///

@@ -25,7 +25,7 @@ impl Matrix {
         }
     }
 
-    /// What is added to red, green and blue before they are rounded down, in steps of RGB565.
+    /// Addends of red, green and blue before they are rounded down, in steps of RGB565.
     fn thresholds(self, [x, y]: [u32; 2]) -> Vector {
         let middle = |number: u32, log2: u32| (f64::from(number) + 0.5) / f64::from(1 << log2);
         match self {

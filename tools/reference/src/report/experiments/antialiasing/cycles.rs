@@ -32,7 +32,7 @@ pub struct Cycles {
     pub overlapped: Option<f64>,
 }
 
-/// What is drawn on the SoC: a built-in scene, or a mesh of [`generate`].
+/// Subject of a measured frame: a built-in scene, or a mesh of [`generate`].
 struct Case {
     name: String,
     scene: Option<SceneFile>,
