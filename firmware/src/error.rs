@@ -13,15 +13,15 @@ use glint_core::orientation::log::LogError;
 use glint_core::wire::Failure;
 use glint_core::wireframe::ProgramError;
 use glint_engines::gesture::SetUpError;
+use glint_program::drawn::DrawError;
+use glint_program::gateware::Fallback;
+use glint_program::sensor::{CalibrationError, SensorError};
+use glint_program::shapes::Shapes;
 use glint_scene::{LineError, SettingError};
 
 use crate::arena::MAX_UPLOADS;
-use crate::gateware::Fallback;
 use crate::models::{NameError, UploadError};
-use crate::picture::DrawError;
 use crate::scenes::{BuiltIn, DEFAULT, SCENES};
-use crate::sensor::{CalibrationError, SensorError};
-use crate::shapes::Shapes;
 
 /// Reason why a command failed. `Display` is the text after `error: `.
 #[derive(Debug)]

@@ -4,13 +4,13 @@ use core::time::Duration;
 
 use glint_core::tasks::Turn;
 use glint_hal::timer::{Clock, Deadline};
+use glint_program::hardware::Devices;
+use glint_program::sensor;
 use litex_pac::cpu;
 
 use crate::demo::Demo;
-use crate::machine::Devices;
 use crate::panel;
 use crate::picture::Picture;
-use crate::sensor;
 
 /// Time between two updates of the blinking LED and of the digits.
 const HEARTBEAT: Duration = Duration::from_millis(500);

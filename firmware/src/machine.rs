@@ -1,67 +1,25 @@
 //! The state of the machine.
 
-use glint_core::block::Block;
 use glint_core::feature::TEXTURE;
-use glint_hal::digits::Digits;
-use glint_hal::gpio::{InputPort, OutputPort};
-use glint_hal::i2c::I2c;
-use glint_hal::timer::{Clock, Deadline};
+use glint_hal::timer::Clock;
+use glint_program::gesture::Gesture;
+use glint_program::hardware::{Devices, Identity};
+use glint_program::interrupts::{ConsoleUart, UART};
+use glint_program::renderer::Renderer;
+use glint_program::sensor::Imu;
 use glint_scene::{Animator, Scene};
 use litex_pac::ctrl::Ctrl;
 
 use crate::arena::Loan;
 use crate::demo::Demo;
-use crate::gesture::Gesture;
-use crate::interrupts::UART;
 use crate::models::Models;
 use crate::panel::Switches;
 use crate::picture::Picture;
-use crate::renderer::Renderer;
 use crate::replay::Replay;
 use crate::scenes::Library;
-use crate::sensor::Imu;
-use crate::terminal::{ConsoleUart, Terminal};
+use crate::terminal::Terminal;
 use crate::transfer::Downloads;
 use crate::wireframe::Keypad;
-
-/// Build ids of firmware and gateware.
-#[derive(Clone, Copy)]
-pub struct Identity {
-    /// Build id of the gateware that the firmware was built for.
-    pub firmware: u32,
-    /// Build id of the gateware.
-    pub gateware: u32,
-    /// Block enable bits of the gateware: one bit for each optional block that it has.
-    pub blocks: u32,
-}
-
-impl Identity {
-    /// Whether the registers of the gateware are those for which the firmware was built.
-    pub const fn matches(&self) -> bool {
-        self.firmware == self.gateware
-    }
-
-    /// Whether the gateware has the block.
-    pub const fn has(&self, block: Block) -> bool {
-        self.blocks & block.bit() != 0
-    }
-}
-
-/// Devices that are accessed only on gateware with a matching build id.
-pub struct Devices {
-    /// The four buttons.
-    pub buttons: InputPort<u8>,
-    /// The sixteen switches.
-    pub switches: InputPort<u16>,
-    /// The sixteen LEDs.
-    pub leds: OutputPort<u16>,
-    /// The displays of digits.
-    pub digits: Digits,
-    /// Time until which the digits show the pattern of the self-test.
-    pub tests_digits: Option<Deadline>,
-    /// The I2C bus of the sensor; `None` after the future that reads the sensor has taken it.
-    pub i2c: Option<I2c>,
-}
 
 /// The state of the machine.
 pub struct Machine {

@@ -15,17 +15,19 @@ use glint_core::gesture::Pose;
 use glint_core::mpu6050::Stream;
 use glint_core::tasks::{self, Turn};
 use glint_hal::timer::{Clock, Deadline};
+use glint_program::hardware::Devices;
+use glint_program::interrupts;
+use glint_program::sensor::{self, Imu, Inbox};
 use glint_scene::{Scene, Sphere};
 
 use crate::commands::{self, gesture as gesture_commands, imu, replay, statistics};
 use crate::demo::Demo;
 use crate::error::CommandError;
 use crate::indicators::Indicators;
-use crate::interrupts;
 use crate::job::{Job, Reply};
-use crate::machine::{Devices, Machine};
+use crate::machine::Machine;
 use crate::panel::HOLD;
-use crate::sensor::{self, Imu, Inbox};
+use crate::renderer;
 use crate::terminal::Input;
 use crate::wireframe::{self, Keypad};
 
@@ -313,7 +315,7 @@ impl MainLoop {
         if begins {
             models.update(scene, &mut progress);
         }
-        let Some(drawn) = renderer.draw(models, scene, picture, progress) else {
+        let Some(drawn) = renderer::draw(renderer, models, scene, picture, progress) else {
             return Turn::worked(renderer.is_ready());
         };
         picture.set_drawn(drawn, scene, models);

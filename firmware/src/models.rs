@@ -12,12 +12,12 @@ use glint_core::shape::Shape;
 use glint_core::texture::{self, Texture};
 use glint_core::wireframe::{Program, ProgramError};
 use glint_model::Frame;
+use glint_program::shapes::Shapes;
 use glint_scene::{Assets, CUBE, Name, Scene};
 use heapless::Vec;
 
 use crate::arena::{Arena, Loan, MAX_UPLOADS};
 use crate::objects::Objects;
-use crate::shapes::Shapes;
 
 /// Name of an upload without a name.
 pub const MODEL: &str = "model";

@@ -2,13 +2,13 @@
 
 use glint_core::console::{NameList, Names};
 use glint_core::flash::Kind;
+use glint_program::shapes::Shapes;
 use glint_scene::Name;
 use heapless::Vec;
 
 use crate::arena::MAX_UPLOADS;
 use crate::models::Models;
 use crate::scenes::{DEFAULT, Library, SCENES, SceneItem};
-use crate::shapes::Shapes;
 
 /// The names of this machine. The uploads' names are copies, because the console also completes while meshes are drawn.
 #[derive(Default)]

@@ -4,52 +4,12 @@ use core::fmt;
 use core::mem::{self, Discriminant};
 
 use glint_core::colour::Winding;
-use glint_core::feature::CPU;
-use glint_hal::frequency::Frequency;
-use glint_hal::triangle::Counters;
-use glint_model::{FrameStats, RenderError};
+use glint_program::drawn::{DrawError, Drawn};
+use glint_program::gateware::Fallback;
+use glint_program::marker::Marker;
 use glint_scene::Scene;
 
-use crate::gateware::{Fallback, Unsupported};
-use crate::marker::Marker;
 use crate::models::Models;
-
-/// Statistics of the last frame.
-#[derive(Clone, Copy)]
-pub struct Drawn {
-    /// Clock cycles of drawing the frame, without the wait for a free frame buffer.
-    pub cycles: u64,
-    /// Counts of triangles, rays and pixels.
-    pub stats: FrameStats,
-    /// The renderer that drew the frame.
-    pub by: RenderedBy,
-    /// Whether the frame's depth codes are in memory.
-    pub has_depth: bool,
-}
-
-impl Drawn {
-    /// The reason why the CPU drew the frame in place of the gateware.
-    const fn fallback(&self) -> Option<Fallback> {
-        match self.by {
-            RenderedBy::Cpu(fallback) => fallback,
-            RenderedBy::Gateware(..) => None,
-        }
-    }
-
-    /// Frame rate: the number of frames per second at this frame's drawing time.
-    pub fn rate(&self, frequency: Frequency) -> u64 {
-        u64::from(frequency.hertz()) / self.cycles.max(1)
-    }
-}
-
-/// The renderer of a frame.
-#[derive(Clone, Copy)]
-pub enum RenderedBy {
-    /// The CPU, with the reason if the gateware could not draw the frame.
-    Cpu(Option<Fallback>),
-    /// The gateware, with the triangle engine's counters, and the reason if the CPU made the descriptors.
-    Gateware(Counters, Option<Unsupported>),
-}
 
 /// A hint that most triangles of the meshes are not drawn.
 #[derive(Clone, Copy)]
@@ -95,26 +55,6 @@ impl fmt::Display for Note {
         match self {
             Self::Fallback(reason) => write!(f, "drawn by the soft core: {reason}"),
             Self::Hint(hint) => hint.fmt(f),
-        }
-    }
-}
-
-/// Reason why a frame is not drawn.
-#[derive(Clone, Copy, Debug)]
-pub enum DrawError {
-    /// The CPU cannot draw the frame.
-    Render(RenderError),
-    /// The gateware cannot draw the frame, for this reason or because the backend is the CPU, and this build does not include the CPU
-    /// backend.
-    NoCpu(Option<Fallback>),
-}
-
-impl fmt::Display for DrawError {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            Self::Render(error) => error.fmt(f),
-            Self::NoCpu(None) => CPU.fmt(f),
-            Self::NoCpu(Some(fallback)) => write!(f, "{fallback}; {CPU}"),
         }
     }
 }

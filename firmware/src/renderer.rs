@@ -1,368 +1,65 @@
-//! Drawing of the scene's frames, by the gateware or by the CPU, into two frame buffers and one buffer of depth codes.
+//! Drawing of the scene's frames, with the marker of the hand and the text overlay.
 
-use glint_core::feature::{CPU, EDGES};
-use glint_core::picture::{Backend, Samples, Size};
-use glint_core::wire::crc32;
-use glint_hal::frequency::Frequency;
-use glint_hal::scanout::Display;
-use glint_model::edges::EdgeList;
-use glint_model::{Eyes, Frame, FrameBuffer, FrameStats, RenderError, Subject};
-use glint_scene::{Defaults, Scene};
-use litex_pac::cpu;
+use glint_core::picture::Backend;
+use glint_program::drawn::{DrawError, Drawn, RenderedBy};
+use glint_program::renderer::Renderer;
+use glint_scene::Scene;
 
-use crate::gateware::{self, Cpu, Fallback, GatewareRenderer, Output, RightEye};
-use crate::memory::Scratch;
 use crate::models::Models;
 use crate::overlay::Overlay;
-use crate::picture::{DrawError, Drawn, Picture, RenderedBy};
+use crate::picture::Picture;
 
-/// The renderers of gateware and CPU, and their memory.
-pub struct Renderer {
-    /// Two frame buffers, one of which is shown.
-    pub display: Display,
-    /// Samples of a frame with four of them a pixel that the CPU draws.
-    pub samples: &'static mut [u16],
-    /// Depth codes of the last frame that was drawn with depth codes in memory, one per pixel or sample.
-    pub depth: &'static mut [u32],
-    /// The right eye's picture of a stereo picture that is being drawn.
-    pub right: RightEye,
-    /// Memory for projected vertices.
-    pub scratch: Scratch,
-    /// The edge list of the last mesh that was shown with edges.
-    pub edges: EdgeList<'static>,
-    /// Clock frequency, for the frames per second in the overlay.
-    pub frequency: Frequency,
-    /// The renderer of the gateware, if the SoC has a triangle engine.
-    pub gateware: Option<GatewareRenderer>,
+/// Draws the frame of `scene` with the mesh or program of `models`, and shows it from the next vertical blanking on. Returns `None` while
+/// the gateware draws, and while the frame buffer to draw into is still on the screen; until then, `models` and `scene` must not change.
+/// Drawing by the CPU is slow and calls `progress` at short intervals.
+pub fn draw(
+    renderer: &mut Renderer,
+    models: &Models,
+    scene: &Scene,
+    picture: &Picture,
+    progress: impl FnMut(),
+) -> Option<Result<Drawn, DrawError>> {
+    let wants_depth = picture.wants_depth && scene.has_depths();
+    let frame = models.frame(scene);
+    let drawn = renderer.draw(&frame, scene.backend, wants_depth, progress)?;
+    if let Ok(drawn) = &drawn {
+        draw_marker(renderer, scene, picture);
+        draw_overlay(renderer, scene, drawn);
+        renderer.show(scene.size);
+    }
+    Some(drawn)
 }
 
-impl Renderer {
-    /// Draws the frame of `scene` with the mesh or program of `models`, and shows it from the next vertical blanking on. Returns
-    /// `None` while the gateware draws, and while the frame buffer to draw into is still on the screen; until then, `models` and `scene`
-    /// must not change. Drawing by the CPU is slow and calls `progress` at short intervals.
-    pub fn draw(
-        &mut self,
-        models: &Models,
-        scene: &Scene,
-        picture: &Picture,
-        mut progress: impl FnMut(),
-    ) -> Option<Result<Drawn, DrawError>> {
-        let frame = models.frame(scene);
-        let wants_depth = picture.wants_depth && scene.has_depths();
-        let eyes = match frame.eyes() {
-            Ok(eyes) => eyes,
-            Err(error) => return Some(Err(DrawError::Render(error))),
-        };
-        let eyes = eyes.as_ref();
-        let drawn =
-            match self.draw_by_gateware(&frame, eyes, scene.backend, wants_depth, &mut progress)? {
-                Ok(gateware::Rendered {
-                    cycles,
-                    stats,
-                    counters,
-                    unsupported,
-                    ..
-                }) => Ok(Drawn {
-                    cycles,
-                    stats,
-                    by: RenderedBy::Gateware(counters, unsupported),
-                    has_depth: wants_depth,
-                }),
-                Err(fallback) if CPU.is_built => self
-                    .draw_by_cpu(&frame, eyes, fallback, progress)?
-                    .map_err(DrawError::Render),
-                Err(fallback) => Err(DrawError::NoCpu(fallback)),
-            };
-        if let Ok(drawn) = &drawn {
-            self.draw_marker(scene, picture);
-            self.draw_overlay(scene, drawn);
-            self.display.show(scene.size.width());
-        }
-        Some(drawn)
-    }
+// The parts of `draw` that few frames need are functions of their own, so that its code takes few lines of the instruction cache.
 
-    // The parts of `draw` that few frames need are functions of their own, so that its code takes few lines of the instruction cache.
-
-    /// Draws the marker of the hand's position, if any, into the frame that was just drawn.
-    #[inline(never)]
-    fn draw_marker(&mut self, scene: &Scene, picture: &Picture) {
-        let (Some(marker), Some(back)) = (picture.marker, self.display.back()) else {
-            return;
-        };
-        marker.draw(back, scene.size);
-        if let Some(gateware) = &mut self.gateware {
-            gateware.invalidate(back);
-        }
-    }
-
-    /// Writes the scene's subject and the drawing speed on the frame that was just drawn.
-    #[inline(never)]
-    fn draw_overlay(&mut self, scene: &Scene, drawn: &Drawn) {
-        let (true, Some(back)) = (scene.has_overlay(), self.display.back()) else {
-            return;
-        };
-        let size = scene.size;
-        let mut overlay = Overlay::new(back, size);
-        overlay.line(format_args!("{}", scene.subject()));
-        let by = match drawn.by {
-            RenderedBy::Cpu(_) => Backend::Cpu,
-            RenderedBy::Gateware(..) => Backend::Gateware,
-        };
-        let (cycles, rate) = (drawn.cycles, drawn.rate(self.frequency));
-        overlay.line(format_args!("{size} by {by}: {cycles} cycles, {rate} fps"));
-        if let Some(gateware) = &mut self.gateware {
-            gateware.invalidate(back);
-        }
-    }
-
-    /// The options of the start scene: those of the gateware in the largest size, if it exists.
-    pub fn defaults(&self) -> Defaults {
-        let Some(gateware) = &self.gateware else {
-            return Defaults::SOFT_CORE;
-        };
-        let mut sizes = Size::ALL.into_iter().rev();
-        let largest = sizes.find(|size| self.has_size(*size));
-        Defaults {
-            size: largest.unwrap_or_default(),
-            ..gateware.defaults()
-        }
-    }
-
-    /// Whether this board draws and shows pictures of this size.
-    pub fn has_size(&self, size: Size) -> bool {
-        self.display.has_size(size.pixels()) && size.pixel_count() <= self.right.colour.len()
-    }
-
-    /// Drops a frame that waits for the next vertical blanking, so that another frame can be drawn.
-    pub fn drop_pending(&mut self) {
-        if !self.is_busy() {
-            self.display.withdraw();
-        }
-    }
-
-    /// Whether the gateware is drawing a frame.
-    pub fn is_busy(&self) -> bool {
-        self.gateware
-            .as_ref()
-            .is_some_and(GatewareRenderer::is_busy)
-    }
-
-    /// Whether the gateware has ended the pass that [`draw`](Self::draw) waits for.
-    pub fn is_ready(&self) -> bool {
-        self.gateware
-            .as_ref()
-            .is_some_and(GatewareRenderer::is_ready)
-    }
-
-    /// Whether [`draw`](Self::draw) has work while the gateware draws.
-    pub fn is_due(&self) -> bool {
-        self.gateware.as_ref().is_some_and(GatewareRenderer::is_due)
-    }
-
-    /// Draws a frame by the gateware. `None` means that the frame is not complete, `Err` that the CPU must draw the frame. The error has
-    /// no reason if the backend is the CPU or the SoC has no triangle engine.
-    fn draw_by_gateware(
-        &mut self,
-        frame: &Frame,
-        eyes: Option<&Eyes>,
-        backend: Backend,
-        wants_depth: bool,
-        progress: &mut dyn FnMut(),
-    ) -> Option<Result<gateware::Rendered, Option<Fallback>>> {
-        let colour = self.display.back()?;
-        let Some(gateware) = &mut self.gateware else {
-            return Some(Err(None));
-        };
-        if backend == Backend::Cpu && !gateware.is_busy() {
-            return Some(Err(None));
-        }
-        let depth = wants_depth.then_some(&mut *self.depth);
-        let mut output = Output { colour, depth };
-        let mut cpu = Cpu {
-            scratch: &mut self.scratch,
-            edges: &mut self.edges,
-            progress,
-        };
-        let advanced = match eyes {
-            Some(eyes) => self.right.advance(gateware, eyes, &mut output, &mut cpu)?,
-            None => gateware.advance(frame, &mut output, &mut cpu)?,
-        };
-        Some(advanced.map_err(Some))
-    }
-
-    #[inline(never)]
-    fn draw_by_cpu(
-        &mut self,
-        frame: &Frame,
-        eyes: Option<&Eyes>,
-        fallback: Option<Fallback>,
-        mut progress: impl FnMut(),
-    ) -> Option<Result<Drawn, RenderError>> {
-        let progress: &mut dyn FnMut() = &mut progress;
-        let pixels = frame.size.pixel_count();
-        let back = self.display.back()?;
-        if let Some(gateware) = &mut self.gateware {
-            gateware.invalidate(back);
-        }
-        let back = back.get_mut(..pixels).unwrap_or_default();
-        let right = self.right.colour.get_mut(..pixels).unwrap_or_default();
-        let has_depth = frame.drawn_samples() == Samples::One;
-        let mut cpu = CpuMemory {
-            samples: self.samples,
-            depth: self.depth,
-            scratch: self.scratch.vertices(frame.scratch_vertices()),
-            edges: &mut self.edges,
-        };
-        let mut draw = |frame: &Frame, colour: &mut [u16], progress: &mut dyn FnMut()| {
-            cpu.draw(frame, colour, progress)
-        };
-        let start = cpu::cycles();
-        let stats = match eyes {
-            // The left eye comes last, so that the depth codes are the left eye's.
-            Some(eyes) => draw(&eyes.right, right, progress).and_then(|of_right| {
-                let of_left = draw(&eyes.left, back, progress)?;
-                self.right.join(eyes, back, progress);
-                Ok(of_left + of_right)
-            }),
-            None => draw(frame, back, progress),
-        };
-        let cycles = cpu::cycles() - start;
-        Some(stats.map(|stats| Drawn {
-            cycles,
-            stats,
-            by: RenderedBy::Cpu(fallback),
-            has_depth,
-        }))
-    }
-
-    /// Draws the frame of `scene` by the gateware `count` times, back to back, without showing it. Returns `None` if the
-    /// gateware has no triangle engine, or while no frame buffer is free.
-    pub fn repeat(
-        &mut self,
-        models: &Models,
-        scene: &Scene,
-        count: u32,
-    ) -> Option<Result<gateware::Rendered, Fallback>> {
-        let frame = models.frame(scene);
-        self.off_screen(|gateware, right, output, cpu| match frame.eyes()? {
-            Some(eyes) => right.repeat(gateware, &eyes, output, cpu, count),
-            None => gateware.repeat(&frame, output, cpu, count),
-        })
-    }
-
-    /// Draws `frame` by the gateware without showing it, waits for its end, and returns the CRC-32 of its colours. Returns `None` if the
-    /// gateware has no triangle engine, or while no frame buffer is free.
-    pub fn checksum(&mut self, frame: &Frame) -> Option<Result<u32, Fallback>> {
-        self.off_screen(|gateware, right, output, cpu| {
-            let eyes = frame.eyes()?;
-            let drawn = loop {
-                let advanced = match &eyes {
-                    Some(eyes) => right.advance(gateware, eyes, output, cpu),
-                    None => gateware.advance(frame, output, cpu),
-                };
-                if let Some(drawn) = advanced {
-                    break drawn;
-                }
-            };
-            // The engine writes to memory and not to the CPU's data cache, which may hold older data.
-            cpu::flush_data_cache();
-            let pixels = output.colour.get(..frame.size.pixel_count());
-            drawn.map(|_| crc32(bytemuck::cast_slice(pixels.unwrap_or_default())))
-        })
-    }
-
-    /// Calls `draw` with the gateware, the right eye, a free frame buffer without depth codes, and the resources of the CPU. Returns
-    /// `None` if the gateware has no triangle engine, or while no frame buffer is free.
-    fn off_screen<T>(
-        &mut self,
-        draw: impl FnOnce(&mut GatewareRenderer, &mut RightEye, &mut Output, &mut Cpu) -> T,
-    ) -> Option<T> {
-        let mut output = Output {
-            colour: self.display.back()?,
-            depth: None,
-        };
-        let mut cpu = Cpu {
-            scratch: &mut self.scratch,
-            edges: &mut self.edges,
-            progress: &mut || {},
-        };
-        let gateware = self.gateware.as_mut()?;
-        Some(draw(gateware, &mut self.right, &mut output, &mut cpu))
-    }
-
-    /// Colours of the last frame: RGB565, row by row.
-    pub fn colours(&self, scene: &Scene) -> &[u16] {
-        let pixels = scene.size.pixel_count();
-        self.display.front().get(..pixels).unwrap_or_default()
-    }
-
-    /// Depth codes of the last frame, row by row.
-    pub fn depths(&self, scene: &Scene) -> &[u32] {
-        let pixels = scene.size.pixel_count();
-        self.depth.get(..pixels).unwrap_or_default()
+/// Draws the marker of the hand's position, if any, into the frame that was just drawn.
+#[inline(never)]
+fn draw_marker(renderer: &mut Renderer, scene: &Scene, picture: &Picture) {
+    let Some(marker) = picture.marker else {
+        return;
+    };
+    if let Some(frame) = renderer.drawn_frame() {
+        marker.draw(frame, scene.size);
     }
 }
 
-/// The memory in which the CPU draws frames.
-struct CpuMemory<'m> {
-    samples: &'m mut [u16],
-    depth: &'m mut [u32],
-    scratch: &'m mut [glint_model::Projected],
-    edges: &'m mut EdgeList<'static>,
-}
-
-impl CpuMemory<'_> {
-    /// Draws a frame into a picture of its size.
-    fn draw(
-        &mut self,
-        frame: &Frame,
-        picture: &mut [u16],
-        progress: &mut dyn FnMut(),
-    ) -> Result<FrameStats, RenderError> {
-        if frame.drawn_samples() == Samples::One {
-            return self.draw_samples(frame, picture, progress);
-        }
-        let samples = core::mem::take(&mut self.samples);
-        let mut sum: Option<FrameStats> = None;
-        for part in frame.parts() {
-            let count = part.window().size.pixel_count();
-            let samples = samples.get_mut(..count).unwrap_or_default();
-            let stats = self.draw_samples(&part, samples, progress)?;
-            part.average(samples, picture, progress);
-            sum = Some(sum.map_or(stats, |sum| sum + stats));
-        }
-        self.samples = samples;
-        Ok(sum.unwrap_or_default())
+/// Writes the scene's subject and the drawing speed on the frame that was just drawn.
+#[inline(never)]
+fn draw_overlay(renderer: &mut Renderer, scene: &Scene, drawn: &Drawn) {
+    if !scene.has_overlay() {
+        return;
     }
-
-    /// Draws the samples of a frame's window.
-    fn draw_samples(
-        &mut self,
-        frame: &Frame,
-        colour: &mut [u16],
-        progress: &mut dyn FnMut(),
-    ) -> Result<FrameStats, RenderError> {
-        let size = frame.window().size;
-        let depth = self.depth.get_mut(..size.pixel_count());
-        let buffer = &mut FrameBuffer {
-            width: size.width(),
-            height: size.height(),
-            colour,
-            depth: depth.unwrap_or_default(),
-            rounding: frame.rounding,
-        };
-        let constants = frame.constants()?;
-        if EDGES.is_built
-            && let Subject::Edges(subject, _) = &frame.subject
-        {
-            // Comes first, because it rejects a mesh with too many edges.
-            self.edges.make(&subject.mesh, progress)?;
-        }
-        let mut stats = frame.draw(&constants, buffer, self.scratch, progress)?;
-        if EDGES.is_built {
-            let (edges, scratch) = (&mut *self.edges, &mut *self.scratch);
-            frame.draw_edges(&constants, edges, buffer, scratch, progress, &mut stats)?;
-        }
-        Ok(stats)
-    }
+    let rate = drawn.rate(renderer.frequency);
+    let Some(frame) = renderer.drawn_frame() else {
+        return;
+    };
+    let size = scene.size;
+    let mut overlay = Overlay::new(frame, size);
+    overlay.line(format_args!("{}", scene.subject()));
+    let by = match drawn.by {
+        RenderedBy::Cpu(_) => Backend::Cpu,
+        RenderedBy::Gateware(..) => Backend::Gateware,
+    };
+    let cycles = drawn.cycles;
+    overlay.line(format_args!("{size} by {by}: {cycles} cycles, {rate} fps"));
 }

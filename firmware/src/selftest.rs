@@ -13,11 +13,12 @@ use glint_engines::gesture::SetUpError;
 use glint_hal::i2c::BusError;
 use glint_hal::timer::whole_millis;
 use glint_model::selftest::{MESH_SHAPE, TestPicture};
+use glint_program::gateware::Fallback;
+use glint_program::gesture::Gesture;
+use glint_program::sensor::{self, SensorError};
 use litex_pac::cpu;
 
-use crate::gateware::Fallback;
 use crate::machine::Machine;
-use crate::sensor::{self, SensorError};
 
 /// Number of bytes at the start of the memory test: four times the size of the data cache.
 const TESTED: usize = 16 << 10;
@@ -255,7 +256,7 @@ fn camera(machine: &mut Machine) -> Verdict {
     if !GESTURE.is_built {
         return Verdict::Absent;
     }
-    match machine.gesture.as_mut().map(crate::gesture::Gesture::check) {
+    match machine.gesture.as_mut().map(Gesture::check) {
         None | Some(Err(image_sensor::Error::Absent)) => Verdict::Absent,
         Some(Err(error)) => Verdict::Failed(Failure::ImageSensor(error)),
         Some(Ok(_)) => Verdict::Passed,

@@ -7,19 +7,10 @@ use embedded_io::Write as _;
 use glint_core::console::{Event, LINE_MAX, LineEditor, PROMPT};
 use glint_core::tasks::Turn;
 use glint_hal::timer::Clock;
-use glint_hal::uart::{Uart, Writer};
+use glint_program::interrupts::{ConsoleUart, ConsoleWriter};
 use heapless::String;
 
 use crate::names::MachineNames;
-
-/// Capacity of the receive queue in bytes: enough for more than a second of input at 115,200 baud, and for several windows
-/// of an upload.
-const RECEIVE_QUEUE: usize = 16 << 10;
-/// Capacity of the send queue in bytes.
-const SEND_QUEUE: usize = 4 << 10;
-
-/// The UART of the SoC.
-pub type ConsoleUart = Uart<RECEIVE_QUEUE, SEND_QUEUE>;
 
 /// Longest time to wait for a serial line that accepts no text; then the text is dropped.
 const SEND_TIMEOUT: Duration = Duration::from_millis(500);
@@ -138,7 +129,7 @@ impl Terminal {
 
 /// Text output: a carriage return precedes each line feed.
 pub struct Output {
-    writer: Writer<'static, RECEIVE_QUEUE, SEND_QUEUE>,
+    writer: ConsoleWriter,
 }
 
 impl fmt::Write for Output {

@@ -11,10 +11,11 @@ use glint_core::wire::{
     CRC_32, Digest, Endpoint, Failure, MAX_FRAME, Manifest, Receiving, Role, Sending, State, Timing,
 };
 use glint_hal::timer::Clock;
+use glint_program::interrupts::ConsoleUart;
 use glint_scene::Name;
 
 use crate::arena::Loan;
-use crate::terminal::{ConsoleUart, Terminal};
+use crate::terminal::Terminal;
 
 /// Number of bytes added to the CRC-32 in a turn.
 const SUMMED: usize = 4 << 10;

@@ -124,14 +124,18 @@ pub struct Sphere {
 
 impl Sphere {
     /// The camera of the start scene, which shows the whole model from above and in front.
-    const START: Self = Self {
+    pub const START: Self = Self {
         r: Q32_32::lit("2.5"),
         // Azimuth 40°, and 65° from the z axis.
         theta: Turns::from_degrees(Q32_32::lit("40")),
         phi: Turns::from_degrees(Q32_32::lit("65")),
     };
 
-    fn view(self) -> Result<View, ViewError> {
+    /// The camera that looks at the origin from here.
+    ///
+    /// # Errors
+    /// [`ViewError`] for a distance or an angle out of range.
+    pub fn view(self) -> Result<View, ViewError> {
         View::spherical(self.r, self.theta, self.phi)
     }
 }

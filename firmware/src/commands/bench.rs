@@ -80,7 +80,7 @@ fn frames<'l>(machine: &mut Machine, count: u32) -> Result<(), CommandError<'l>>
     models.update(scene, &mut || {});
     // Waits while a drawn frame is not shown yet, because no other frame can then be drawn.
     let rendered = loop {
-        if let Some(rendered) = renderer.repeat(models, scene, count) {
+        if let Some(rendered) = renderer.repeat(&models.frame(scene), count) {
             break rendered.map_err(CommandError::Engine)?;
         }
     };

@@ -64,9 +64,9 @@ pub fn begin_download(machine: &mut Machine, depth: bool) -> CommandResult<'stat
     // The triangle engine writes to memory and not to the CPU's data cache, which may hold older data.
     cpu::flush_data_cache();
     let bytes = if depth {
-        bytemuck::cast_slice(renderer.depths(scene))
+        bytemuck::cast_slice(renderer.depths(scene.size))
     } else {
-        bytemuck::cast_slice(renderer.colours(scene))
+        bytemuck::cast_slice(renderer.colours(scene.size))
     };
     let transfer = downloads.send_copy(bytes, terminal);
     Ok(Reply::After(Job::Transfer(transfer)))

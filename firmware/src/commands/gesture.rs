@@ -7,9 +7,9 @@ use glint_core::console::{GestureAction, GestureCommands};
 use glint_core::feature::GESTURE;
 use glint_core::gesture::Window;
 use glint_core::image_sensor::FrameSize;
+use glint_program::gesture::Gesture;
 
 use crate::error::CommandError;
-use crate::gesture::Gesture;
 use crate::job::{CommandResult, GestureJob, Job, JobResult, Reply};
 use crate::machine::Machine;
 

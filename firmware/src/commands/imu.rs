@@ -11,12 +11,12 @@ use glint_core::mpu6050::degrees_per_second;
 use glint_core::orientation::Units;
 use glint_core::steering::Mounting;
 use glint_core::wire::Manifest;
+use glint_program::sensor;
 
 use super::{replay, upload};
 use crate::error::CommandError;
 use crate::job::{CommandResult, Job, JobResult, Reply, SensorJob};
 use crate::machine::Machine;
-use crate::sensor;
 use crate::transfer::Purpose;
 
 /// Number of samples between two reports of the progress of a calibration.

@@ -4,12 +4,13 @@ use core::fmt;
 
 use glint_core::console::{MachineCommands, write_help};
 use glint_core::mesh::Mesh;
+use glint_program::gateware::GatewareRenderer;
+use glint_program::hardware::Devices;
 use litex_pac::{EMULATED, cpu, ctrl};
 
 use crate::error::CommandError;
-use crate::gateware::GatewareRenderer;
 use crate::job::{CommandResult, Reply};
-use crate::machine::{Devices, Machine};
+use crate::machine::Machine;
 use crate::selftest;
 
 impl<'l> MachineCommands<'l> for Machine {

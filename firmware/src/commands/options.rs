@@ -5,6 +5,7 @@ use glint_core::feature::Feature;
 use glint_core::flash::Kind;
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
+use glint_program::renderer::Renderer;
 use glint_scene::Board;
 
 use super::upload;
@@ -12,7 +13,6 @@ use crate::error::CommandError;
 use crate::job::{CommandResult, Reply};
 use crate::machine::Machine;
 use crate::models::Models;
-use crate::renderer::Renderer;
 
 struct ThisBoard<'m> {
     renderer: &'m Renderer,

@@ -7,11 +7,11 @@ use glint_hal::frequency::Frequency;
 use glint_hal::triangle::Counters;
 use glint_model::FrameStats;
 use glint_model::raymarch::FieldStats;
+use glint_program::drawn::RenderedBy;
 use heapless::Vec;
 
 use crate::error::CommandError;
 use crate::machine::Machine;
-use crate::picture::RenderedBy;
 
 /// Prints the statistics of the last frame.
 ///

@@ -3,6 +3,7 @@
 use glint_core::feature::{DEMO, MESH};
 use glint_core::flash::Kind;
 use glint_core::wire::Manifest;
+use glint_program::sensor;
 use litex_pac::cpu;
 
 use super::replay;
@@ -10,7 +11,6 @@ use crate::arena::Loan;
 use crate::error::CommandError;
 use crate::job::{CommandResult, Job, Reply};
 use crate::machine::Machine;
-use crate::sensor;
 use crate::transfer::{Purpose, Transfer};
 
 /// Begins to receive the data that `manifest` announces into the staging memory. The reply has the line `ready`, or `present` if the

@@ -124,6 +124,11 @@ pub fn cycles() -> [u64; 2] {
 
 /// Passes all queued events to `imu`.
 pub fn deliver(imu: &mut Imu) -> Turn {
+    deliver_each(imu, &mut |_| {})
+}
+
+/// Passes all queued events to `imu`, and calls `on_sample` after each sample.
+pub fn deliver_each(imu: &mut Imu, on_sample: &mut dyn FnMut(&Imu)) -> Turn {
     let mut turn = Turn::Wait;
     if !IMU.is_built {
         return turn;
@@ -137,6 +142,7 @@ pub fn deliver(imu: &mut Imu) -> Turn {
                 let start = cpu::cycles_low();
                 imu.on_sample(time, &measurement);
                 count(1, start);
+                on_sample(imu);
             }
             Event::Error(error) => imu.on_error(error),
         }

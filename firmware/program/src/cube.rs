@@ -3,6 +3,8 @@
 use glint_core::colour::Rgb565;
 use glint_core::mesh::{ChunkHeader, MAGIC, MeshHeader, Triangle, Vertex};
 
+use crate::aligned::Aligned;
+
 /// Number of vertices of the cube.
 const VERTICES: usize = 8;
 /// Number of triangles of the cube.
@@ -22,19 +24,7 @@ const SIDES: [(usize, u16, u16); 3] = [
 ];
 
 /// The mesh in the format of an upload.
-pub static BYTES: Aligned = Aligned(bytes());
-
-/// The bytes of the mesh, aligned to 16 bytes.
-#[repr(align(16))]
-pub struct Aligned([u8; LENGTH]);
-
-impl core::ops::Deref for Aligned {
-    type Target = [u8];
-
-    fn deref(&self) -> &[u8] {
-        &self.0
-    }
-}
+pub static BYTES: Aligned<[u8; LENGTH]> = Aligned(bytes());
 
 const LENGTH: usize =
     MeshHeader::BYTES + ChunkHeader::BYTES + VERTICES * Vertex::BYTES + TRIANGLES * Triangle::BYTES;

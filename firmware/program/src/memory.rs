@@ -9,8 +9,6 @@ use glint_model::Projected;
 use litex_pac::cpu;
 use litex_pac::memories::MAIN_RAM;
 
-use crate::arena::Arena;
-
 /// All windows of main memory. `take` lends each of them only once.
 pub struct Memory {
     /// Two frame buffers: colours in RGB565, one per pixel.
@@ -26,13 +24,13 @@ pub struct Memory {
     /// Memory for projected vertices, used by the CPU backend.
     pub scratch: Scratch,
     /// Memory for copies of meshes with transformed normals.
-    pub turned: Arena,
+    pub turned: &'static mut [u8],
     /// Memory for the edges of the shown mesh.
     pub edges: &'static mut [u32],
     /// Memory for built-in meshes.
     pub shapes: &'static mut [u8],
     /// Memory for uploaded meshes and programs, and the staging memory.
-    pub uploads: Arena,
+    pub uploads: &'static mut [u8],
     /// Memory for the descriptors and band lists that pass from the triangle engine's geometry pass to its raster pass.
     pub lists: &'static mut [u32],
 }
@@ -111,10 +109,10 @@ impl Memory {
                 memory: window!(_scratch, _scratch_size, MaybeUninit<Projected>),
                 ready: 0,
             },
-            turned: Arena::new(window!(_turned, _turned_size, u8)),
+            turned: window!(_turned, _turned_size, u8),
             edges: window!(_edges, _edges_size, u32),
             shapes: window!(_shapes, _shapes_size, u8),
-            uploads: Arena::new(window!(_uploads, _uploads_size, u8)),
+            uploads: window!(_uploads, _uploads_size, u8),
             lists: window!(_lists, _lists_size, u32),
         })
     }

@@ -23,7 +23,7 @@ impl Shapes {
     /// [`Deviation`] for a damaged cube.
     pub fn new(memory: &'static mut [u8]) -> Result<Self, Deviation> {
         Ok(Self {
-            cube: Mesh::new_checked(&cube::BYTES)?,
+            cube: Mesh::new_checked(&cube::BYTES.0)?,
             shapes: [None; Shape::ALL.len()],
             memory,
         })

@@ -1,0 +1,67 @@
+//! The result of drawing a frame.
+
+use core::fmt;
+
+use glint_core::feature::CPU;
+use glint_hal::frequency::Frequency;
+use glint_hal::triangle::Counters;
+use glint_model::{FrameStats, RenderError};
+
+use crate::gateware::{Fallback, Unsupported};
+
+/// Statistics of the last frame.
+#[derive(Clone, Copy)]
+pub struct Drawn {
+    /// Clock cycles of drawing the frame, without the wait for a free frame buffer.
+    pub cycles: u64,
+    /// Counts of triangles, rays and pixels.
+    pub stats: FrameStats,
+    /// The renderer that drew the frame.
+    pub by: RenderedBy,
+    /// Whether the frame's depth codes are in memory.
+    pub has_depth: bool,
+}
+
+impl Drawn {
+    /// The reason why the CPU drew the frame in place of the gateware.
+    pub const fn fallback(&self) -> Option<Fallback> {
+        match self.by {
+            RenderedBy::Cpu(fallback) => fallback,
+            RenderedBy::Gateware(..) => None,
+        }
+    }
+
+    /// Frame rate: the number of frames per second at this frame's drawing time.
+    pub fn rate(&self, frequency: Frequency) -> u64 {
+        u64::from(frequency.hertz()) / self.cycles.max(1)
+    }
+}
+
+/// The renderer of a frame.
+#[derive(Clone, Copy)]
+pub enum RenderedBy {
+    /// The CPU, with the reason if the gateware could not draw the frame.
+    Cpu(Option<Fallback>),
+    /// The gateware, with the triangle engine's counters, and the reason if the CPU made the descriptors.
+    Gateware(Counters, Option<Unsupported>),
+}
+
+/// Reason why a frame is not drawn.
+#[derive(Clone, Copy, Debug)]
+pub enum DrawError {
+    /// The CPU cannot draw the frame.
+    Render(RenderError),
+    /// The gateware cannot draw the frame, for this reason or because the backend is the CPU, and this build does not include the CPU
+    /// backend.
+    NoCpu(Option<Fallback>),
+}
+
+impl fmt::Display for DrawError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Render(error) => error.fmt(f),
+            Self::NoCpu(None) => CPU.fmt(f),
+            Self::NoCpu(Some(fallback)) => write!(f, "{fallback}; {CPU}"),
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! The library of programs for a Glint machine: games, instruments and demos on the soft core, drawn by the engines.
+//!
+//! A [`Program`] is a value with three functions: it starts, it is updated by the [`Board`]'s input, and it describes its next
+//! [`Picture`]. [`run!`] makes a binary of it: on the soft core the program has the machine for itself; on a host it draws by the model,
+//! without a window, for tests ([`host`]).
+//!
+//! ```no_run
+//! use glint_program::{Board, Picture, PictureError, Program};
+//! use glint_program::core::fixed::{Q32_32, Turns};
+//! use glint_program::core::camera::View;
+//! use glint_program::core::field::Field;
+//! use glint_program::core::matrix::Matrix;
+//! use glint_program::core::mesh::Mesh;
+//!
+//! /// A cube before a camera that moves around it.
+//! struct Cube {
+//!     mesh: Mesh<'static>,
+//!     azimuth: Turns,
+//! }
+//!
+//! impl Program for Cube {
+//!     fn start(board: &mut Board) -> Self {
+//!         Self { mesh: board.cube(), azimuth: Turns(0) }
+//!     }
+//!
+//!     fn update(&mut self, board: &mut Board) {
+//!         // A turn in four seconds.
+//!         self.azimuth = board.turns(Q32_32::lit("0.25"));
+//!     }
+//!
+//!     fn draw<'p>(&'p self, picture: &mut Picture<'p>) -> Result<(), PictureError> {
+//!         picture.view = View::spherical(Q32_32::lit("2.5"), self.azimuth, Turns::QUARTER)?;
+//!         picture.mesh(self.mesh, Matrix::IDENTITY)?;
+//!         Ok(())
+//!     }
+//! }
+//!
+//! glint_program::run!(Cube);
+//! ```
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`Board`] | buttons, switches, LEDs, digits, motion sensor, time, serial line |
+//! | [`Picture`] | camera, light, meshes, field, lines, rectangles |
+//! | [`Canvas`] | text and shapes of `embedded-graphics` on the drawn picture |
+//! | [`lines`] | segments in space, drawn by the line engine |
+//! | [`core`], [`model`], [`scene`] | the crates whose types the interface uses |
+//! | [`host`] | the same program on a host |
+//!
+//! The other modules exist on the soft core only, and are for programs that need more than this interface: `hardware` starts the
+//! machine, and `renderer` draws frames. The firmware with the console is such a program.
+#![cfg_attr(target_arch = "riscv32", no_std)]
+#![deny(unsafe_code)]
+
+mod aligned;
+mod board;
+mod canvas;
+mod cube;
+pub mod lines;
+mod picture;
+mod program;
+pub mod shapes;
+pub mod soft_core;
+
+#[cfg(not(target_arch = "riscv32"))]
+pub mod host;
+
+#[cfg(target_arch = "riscv32")]
+pub mod drawn;
+#[cfg(target_arch = "riscv32")]
+pub mod gateware;
+#[cfg(target_arch = "riscv32")]
+pub mod gesture;
+#[cfg(target_arch = "riscv32")]
+#[allow(unsafe_code)] // Uses the UART before it has an owner.
+pub mod hardware;
+#[cfg(target_arch = "riscv32")]
+#[allow(unsafe_code)] // Enables interrupts.
+pub mod interrupts;
+#[cfg(target_arch = "riscv32")]
+pub mod machine;
+#[cfg(target_arch = "riscv32")]
+pub mod marker;
+#[cfg(target_arch = "riscv32")]
+#[allow(unsafe_code)] // Makes slices of the memory at linker symbols.
+pub mod memory;
+#[cfg(target_arch = "riscv32")]
+#[allow(unsafe_code)] // Exports the trap handler's symbol, and takes the UART after a panic.
+pub mod panic;
+#[cfg(target_arch = "riscv32")]
+pub mod renderer;
+#[cfg(target_arch = "riscv32")]
+#[allow(unsafe_code)] // Polls a pinned future from interrupts.
+pub mod sensor;
+
+pub use aligned::Aligned;
+pub use board::{Board, Button, Motion};
+pub use canvas::Canvas;
+pub use embedded_graphics as graphics;
+pub use glint_core as core;
+pub use glint_model as model;
+pub use glint_scene as scene;
+pub use picture::{MAX_RECTANGLES, Picture, PictureError};
+pub use program::Program;
+
+/// Clock cycles of the soft core since reset, to measure a program's own code; on a host always 0.
+#[must_use]
+pub fn cycles() -> u64 {
+    #[cfg(target_arch = "riscv32")]
+    return litex_pac::cpu::cycles();
+    #[cfg(not(target_arch = "riscv32"))]
+    0
+}
+
+/// Makes the binary of a [`Program`], which is given as a type.
+#[macro_export]
+macro_rules! run {
+    ($program:ty) => {
+        #[cfg(target_arch = "riscv32")]
+        #[allow(unsafe_code)] // The start-up code calls this symbol.
+        #[unsafe(export_name = "main")]
+        extern "C" fn glint_main() -> ! {
+            $crate::machine::run::<$program>()
+        }
+
+        #[cfg(not(target_arch = "riscv32"))]
+        fn main() -> std::process::ExitCode {
+            $crate::host::main::<$program>()
+        }
+    };
+}
