@@ -1,8 +1,9 @@
-//! Checks that a file can be a program for a board: a flat binary that begins with an instruction.
+//! Programs for a board: flat binaries that begin with an instruction, and ELF files, which are converted.
 
 use crate::error::{FormatError, InputError, quote};
 use crate::formats::read_up_to;
 use glint_core::flash::Image;
+use glint_program_image as image;
 use std::path::Path;
 
 /// Length of an instruction in bytes.
@@ -17,12 +18,17 @@ const OPCODES: [u8; 11] = [
     0x03, 0x0f, 0x13, 0x17, 0x23, 0x33, 0x37, 0x63, 0x67, 0x6f, 0x73,
 ];
 
-/// Reads and checks the file at `path`, or standard input.
+/// Reads the file at `path`, or standard input: a flat binary, which is checked, or an ELF file, whose memory image is returned.
 ///
 /// # Errors
-/// The file cannot be read, or [`check`] rejects it.
+/// The file cannot be read, [`check`] rejects it, or the ELF file is no program for a board of Glint.
 pub fn read(path: &Path) -> Result<Vec<u8>, InputError> {
     let bytes = read_up_to(path, MEMORY)?;
+    if bytes.starts_with(&image::MAGIC) {
+        return image::of_elf(&bytes, MEMORY as u64).map_err(|found| {
+            FormatError::whole("a program for Glint's boards", found.to_string()).in_path(path)
+        });
+    }
     check(&bytes, path)?;
     Ok(bytes)
 }
@@ -30,8 +36,7 @@ pub fn read(path: &Path) -> Result<Vec<u8>, InputError> {
 /// Checks the bytes of the file at `path`.
 ///
 /// # Errors
-/// The board cannot run the file: it is empty, too long, an ELF file, a text, an image of the flash, or does not begin with an
-/// instruction.
+/// The board cannot run the file: it is empty, too long, a text, an image of the flash, or does not begin with an instruction.
 pub fn check(bytes: &[u8], path: &Path) -> Result<(), InputError> {
     let flat = "a flat binary that begins with an RV32IM instruction";
     let error =
@@ -39,11 +44,6 @@ pub fn check(bytes: &[u8], path: &Path) -> Result<(), InputError> {
     let Some(first) = bytes.first_chunk::<INSTRUCTION>() else {
         return error(flat, format!("a file of {} bytes", bytes.len()));
     };
-    if first == b"\x7fELF" {
-        let flat = path.with_extension("bin");
-        let expected = format!("a flat binary such as {}", flat.display());
-        return error(&expected, "an ELF file".to_owned());
-    }
     let start = bytes.get(..START).unwrap_or(bytes);
     if start.iter().all(|&byte| is_text(byte)) {
         return error(flat, format!("the text {}", quote(first)));
@@ -83,7 +83,6 @@ mod tests {
             let error = refused(bytes);
             assert!(error.ends_with(&format!("found {found}")), "{error}");
         }
-        assert!(refused(b"\x7fELF\x01").contains("such as target/glint.bin, found an ELF file"));
         // lui x1, 0x40000
         assert!(check(&[0xb7, 0, 0, 0x40], Path::new("a.bin")).is_ok());
     }

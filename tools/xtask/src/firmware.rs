@@ -5,12 +5,12 @@ use std::ops::Range;
 use std::path::Path;
 use std::process::Command;
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result};
+use glint_program_image as image;
 use glint_scene_file::{NAMES, Needs, SceneFile};
-use litex_pac::memories::{MAIN_RAM, SRAM};
-use object::elf::PT_LOAD;
-use object::read::elf::{ElfFile32, ProgramHeader};
-use object::{Endianness, Object, ObjectSection, ObjectSymbol, SectionKind};
+use litex_pac::memories::MAIN_RAM;
+use object::read::elf::ElfFile32;
+use object::{Endianness, Object, ObjectSection, SectionKind};
 
 use crate::gateware::Board;
 use crate::{paths, run};
@@ -141,7 +141,7 @@ fn compile(
 
     let elf = fs::read(built.join(TARGET).join("firmware/glint-firmware"))
         .context("reading the firmware")?;
-    let bytes = image(&elf, main_ram).with_context(|| format!("firmware {name}"))?;
+    let bytes = image::of_elf(&elf, main_ram).with_context(|| format!("firmware {name}"))?;
     let folder = paths::target().join("firmware");
     fs::create_dir_all(&folder).with_context(|| format!("creating {}", folder.display()))?;
     let path = folder.join(&name).with_extension("bin");
@@ -169,71 +169,6 @@ fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     fs::write(path, bytes).with_context(|| format!("writing {}", path.display()))
 }
 
-/// Returns the memory image of an ELF file, from the base of main memory.
-fn image(elf: &[u8], main_ram: u64) -> Result<Vec<u8>> {
-    let file = ElfFile32::<Endianness>::parse(elf).context("not an ELF file")?;
-    let endian = file.endian();
-    let (base, end) = (
-        u64::from(MAIN_RAM.base),
-        u64::from(MAIN_RAM.base) + main_ram,
-    );
-    ensure!(
-        file.entry() == base,
-        "the entry point is {:#010x}, expected {base:#010x}, where the BIOS jumps to",
-        file.entry()
-    );
-    let symbol = |name: &str| symbol(&file, name);
-    let windows_end = symbol("_windows_end")?;
-    ensure!(
-        windows_end <= end,
-        "the windows end at {windows_end:#010x}: expected at most the end of main memory, {end:#010x}"
-    );
-
-    let fast = symbol("_fast")?..symbol("_fast")? + symbol("_fast_size")?;
-    let sram = u64::from(SRAM.base)..u64::from(SRAM.base) + u64::from(SRAM.size);
-    ensure!(
-        sram.start <= fast.start && fast.end <= sram.end,
-        "memory.x places fast code at {fast:#x?}: expected the SoC's SRAM {sram:#x?}"
-    );
-
-    let mut image = Vec::new();
-    for segment in file.elf_program_headers() {
-        if segment.p_type(endian) != PT_LOAD {
-            continue;
-        }
-        // `p_paddr` is the load address of a segment, which may differ from its address at run time.
-        let address = u64::from(segment.p_paddr(endian));
-        let length = u64::from(segment.p_memsz(endian));
-        let Ok(data) = segment.data(endian, elf) else {
-            bail!("a segment without data");
-        };
-        ensure!(
-            base <= address && address + length <= symbol("_frame_a")?,
-            "the segment {address:#010x} to {:#010x}: expected a segment in the program's part of main memory",
-            address + length
-        );
-        if data.is_empty() {
-            continue;
-        }
-        let offset = (address - base) as usize;
-        ensure!(
-            offset >= image.len(),
-            "the segment at {address:#010x} overlaps the previous segment"
-        );
-        image.resize(offset, 0);
-        image.extend_from_slice(data);
-    }
-    Ok(image)
-}
-
-/// The value of a symbol.
-fn symbol(file: &ElfFile32<Endianness>, name: &str) -> Result<u64> {
-    let found = file.symbols().find(|symbol| symbol.name() == Ok(name));
-    found
-        .map(|symbol| symbol.address())
-        .with_context(|| format!("no symbol {name}"))
-}
-
 /// The sizes of an ELF file whose image has this `length`.
 fn sizes(elf: &[u8], length: u64) -> Result<Image> {
     let file = ElfFile32::<Endianness>::parse(elf).context("not an ELF file")?;
@@ -253,6 +188,11 @@ fn sizes(elf: &[u8], length: u64) -> Result<Image> {
         variables: size(&[SectionKind::Data, SectionKind::UninitializedData]),
         stack: symbol(&file, "__ebss")?..symbol(&file, "_stack_start")?,
     })
+}
+
+/// The value of a symbol.
+fn symbol(file: &ElfFile32<Endianness>, name: &str) -> Result<u64> {
+    image::symbol(file, name).with_context(|| format!("no symbol {name}"))
 }
 
 #[cfg(test)]

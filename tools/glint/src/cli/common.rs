@@ -97,7 +97,7 @@ impl Baud {
 pub struct LineArguments {
     #[command(flatten)]
     pub baud: Baud,
-    /// Firmware of the emulated or the virtual board [default: the one built by `cargo xtask firmware`].
+    /// Firmware of the emulated or the virtual board, an ELF file or a flat binary [default: the one built by `cargo xtask firmware`].
     #[arg(long, value_name = "FILE")]
     pub firmware: Option<PathBuf>,
 }

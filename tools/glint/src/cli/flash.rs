@@ -35,7 +35,7 @@ use virtual_board::virtual_flash::MAX_BYTES;
 /// bitstream does not change the bitstream in the flash.
 #[derive(Args)]
 pub struct FlashArguments {
-    /// Program to load: a flat binary, or `-` for standard input; with --spi, an image made by `glint image make`.
+    /// Program to load: an ELF file, a flat binary, or `-` for standard input; with --spi, an image made by `glint image make`.
     program: PathBuf,
     /// Write an image to the SPI flash of an Urbana with openFPGALoader.
     #[arg(long, conflicts_with_all = ["board", "address", "no_output", "wait", "baud", "json"])]

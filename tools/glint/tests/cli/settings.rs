@@ -302,7 +302,7 @@ fn only_programs_are_flashed() {
         ],
         &format!(
             "
-            glint.elf: expected a flat binary such as glint.bin, found an ELF file
+            glint.elf: expected a program for Glint's boards, found an ELF file that is damaged, or not for a 32-bit processor: Invalid ELF header size or alignment
             notes.txt: {flat}, found the text 'read'
             zeros.bin: {flat}, found the bytes [00, 00, 00, 00]
             /dev/null: {flat}, found a file of 0 bytes

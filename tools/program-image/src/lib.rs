@@ -1,0 +1,136 @@
+//! Memory images of programs for the soft core, made from ELF files.
+#![forbid(unsafe_code)]
+
+use std::ops::Range;
+
+use litex_pac::BUILD_ID;
+use litex_pac::memories::{MAIN_RAM, SRAM};
+use object::elf::PT_LOAD;
+use object::read::elf::{ElfFile32, ProgramHeader};
+use object::{Endianness, Object, ObjectSymbol};
+
+/// First bytes of an ELF file.
+pub const MAGIC: [u8; 4] = *b"\x7fELF";
+
+/// Symbol of the build id in a program.
+const BUILD_ID_SYMBOL: &str = "GLINT_BUILD_ID";
+
+/// Reason why an ELF file is no program for a board. The texts state what was found.
+#[derive(Debug, thiserror::Error)]
+pub enum ImageError {
+    /// The file is damaged, or is not for a 32-bit processor.
+    #[error("an ELF file that is damaged, or not for a 32-bit processor: {0}")]
+    Elf(#[from] object::read::Error),
+    /// The linker script of Glint was not used.
+    #[error(
+        "an ELF file without the symbol {0}: link it with the arguments -Tmemory.x and -Tlink.x"
+    )]
+    Symbol(&'static str),
+    /// The program was built for gateware with other registers.
+    #[error(
+        "a program for gateware {found:#010x}, while these boards have {BUILD_ID:#010x}: build both from the same sources of Glint"
+    )]
+    BuildId {
+        /// Build id in the program.
+        found: u32,
+    },
+    /// The program does not begin where the BIOS jumps to.
+    #[error("the entry point {found:#010x}, while the BIOS jumps to {base:#010x}", base = MAIN_RAM.base)]
+    Entry {
+        /// The entry point.
+        found: u64,
+    },
+    /// Main memory is smaller than the memory map.
+    #[error("a memory map that ends at {found:#010x}, beyond the end of main memory, {end:#010x}")]
+    Windows {
+        /// End of the memory map.
+        found: u64,
+        /// End of main memory.
+        end: u64,
+    },
+    /// Fast code is outside of the SRAM.
+    #[error("fast code at {found:#x?}, outside of the SRAM, {sram:#x?}")]
+    Fast {
+        /// Address range of the fast code.
+        found: Range<u64>,
+        /// Address range of the SRAM.
+        sram: Range<u64>,
+    },
+    /// A segment is outside of the program's part of main memory.
+    #[error("a segment from {:#010x} to {:#010x}, outside of the program's part of main memory", .0.start, .0.end)]
+    Segment(Range<u64>),
+    /// Two segments overlap.
+    #[error("a segment at {0:#010x} that overlaps the previous segment")]
+    Overlap(u64),
+}
+
+/// Returns the memory image of an ELF file, from the base of main memory, for a board with `main_ram` bytes of main memory.
+///
+/// # Errors
+/// [`ImageError`].
+pub fn of_elf(elf: &[u8], main_ram: u64) -> Result<Vec<u8>, ImageError> {
+    let file = ElfFile32::<Endianness>::parse(elf)?;
+    let endian = file.endian();
+    let (base, end) = (
+        u64::from(MAIN_RAM.base),
+        u64::from(MAIN_RAM.base) + main_ram,
+    );
+    let symbol = |name| symbol(&file, name).ok_or(ImageError::Symbol(name));
+    let windows_end = symbol("_windows_end")?;
+    if file.entry() != base {
+        return Err(ImageError::Entry {
+            found: file.entry(),
+        });
+    }
+    if windows_end > end {
+        return Err(ImageError::Windows {
+            found: windows_end,
+            end,
+        });
+    }
+
+    let fast = symbol("_fast")?..symbol("_fast")? + symbol("_fast_size")?;
+    let sram = u64::from(SRAM.base)..u64::from(SRAM.base) + u64::from(SRAM.size);
+    if fast.start < sram.start || sram.end < fast.end {
+        return Err(ImageError::Fast { found: fast, sram });
+    }
+
+    let program_end = symbol("_sample_memory")?;
+    let mut image = Vec::new();
+    for segment in file.elf_program_headers() {
+        if segment.p_type(endian) != PT_LOAD {
+            continue;
+        }
+        // `p_paddr` is the load address of a segment, which may differ from its address at run time.
+        let address = u64::from(segment.p_paddr(endian));
+        let range = address..address + u64::from(segment.p_memsz(endian));
+        let data = segment.data(endian, elf);
+        let data = data.map_err(|()| ImageError::Segment(range.clone()))?;
+        if range.start < base || program_end < range.end {
+            return Err(ImageError::Segment(range));
+        }
+        if data.is_empty() {
+            continue;
+        }
+        let offset = (address - base) as usize;
+        if offset < image.len() {
+            return Err(ImageError::Overlap(address));
+        }
+        image.resize(offset, 0);
+        image.extend_from_slice(data);
+    }
+    let offset = symbol(BUILD_ID_SYMBOL)?.wrapping_sub(base) as usize;
+    let found = image.get(offset..).and_then(|bytes| bytes.first_chunk());
+    let found = found.map_or(0, |bytes| u32::from_le_bytes(*bytes));
+    if found != BUILD_ID {
+        return Err(ImageError::BuildId { found });
+    }
+    Ok(image)
+}
+
+/// The value of a symbol; `None` if the file has no such symbol.
+#[must_use]
+pub fn symbol(file: &ElfFile32<Endianness>, name: &str) -> Option<u64> {
+    let found = file.symbols().find(|symbol| symbol.name() == Ok(name));
+    found.map(|symbol| symbol.address())
+}
