@@ -3,7 +3,7 @@
 #![deny(unsafe_code)]
 
 use glint_program::core::camera::View;
-use glint_program::core::colour::{Rgb565, Shading};
+use glint_program::core::colour::Rgb565;
 use glint_program::core::fixed::{Q8_24, Q32_32, Turns};
 use glint_program::core::light::{Background, Light, parse_rgb};
 use glint_program::core::matrix::{Axis, Matrix, MatrixError};
@@ -14,43 +14,24 @@ use glint_program::graphics::pixelcolor::{Rgb565 as Colour, RgbColor};
 use glint_program::{Board, Button, Canvas, Picture, PictureError, Program};
 
 /// Radius of an orbit, size of the planet, turns a second, and colour.
-const PLANETS: [(Q8_24, Q8_24, Q32_32, &str); 6] = [
+type Planet = (Q8_24, Q8_24, Q32_32, &'static str);
+
+const fn planet(orbit: &str, size: &str, turns: &str, colour: &'static str) -> Planet {
     (
-        Q8_24::lit("0.55"),
-        Q8_24::lit("0.10"),
-        Q32_32::lit("0.40"),
-        "b0a090",
-    ),
-    (
-        Q8_24::lit("0.80"),
-        Q8_24::lit("0.16"),
-        Q32_32::lit("0.25"),
-        "e8c070",
-    ),
-    (
-        Q8_24::lit("1.10"),
-        Q8_24::lit("0.18"),
-        Q32_32::lit("0.16"),
-        "4080ff",
-    ),
-    (
-        Q8_24::lit("1.40"),
-        Q8_24::lit("0.13"),
-        Q32_32::lit("0.10"),
-        "d05030",
-    ),
-    (
-        Q8_24::lit("1.90"),
-        Q8_24::lit("0.40"),
-        Q32_32::lit("0.05"),
-        "d0a070",
-    ),
-    (
-        Q8_24::lit("2.50"),
-        Q8_24::lit("0.32"),
-        Q32_32::lit("0.03"),
-        "e0d0a0",
-    ),
+        Q8_24::lit(orbit),
+        Q8_24::lit(size),
+        Q32_32::lit(turns),
+        colour,
+    )
+}
+
+const PLANETS: [Planet; 6] = [
+    planet("0.55", "0.10", "0.40", "b0a090"),
+    planet("0.80", "0.16", "0.25", "e8c070"),
+    planet("1.10", "0.18", "0.16", "4080ff"),
+    planet("1.40", "0.13", "0.10", "d05030"),
+    planet("1.90", "0.40", "0.05", "d0a070"),
+    planet("2.50", "0.32", "0.03", "e0d0a0"),
 ];
 /// The planet with the moon.
 const EARTH: usize = 2;
@@ -110,7 +91,7 @@ impl Program for Solar {
         )?;
         picture.appearance.background = Some(Background::Colour([4, 4, 12]));
         picture.appearance.ambient = Some([40; 3]);
-        // Lights are ranges of directions, so the light of the sun comes from above.
+        // A light has a direction, not a place: that of the sun comes from above.
         let up = [Q32_32::ZERO, Q32_32::lit("0.5"), Q32_32::ONE];
         if let Ok(light) = Light::new(up, [0xff; 3]) {
             let _ = picture.appearance.lights.push(light);
@@ -145,7 +126,6 @@ impl Solar {
     ) -> Result<(), PictureError> {
         let object = picture.mesh(self.sphere, place)?;
         object.colour = parse_rgb(colour).map(Rgb565::from_rgb888);
-        object.subject.shading = Shading::Flat;
         Ok(())
     }
 }

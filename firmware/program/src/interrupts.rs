@@ -9,6 +9,7 @@ use litex_pac::{Interrupt, cpu};
 
 use crate::gesture;
 use crate::sensor;
+use crate::supervision;
 
 /// Capacity of the receive queue in bytes: enough for more than a second of input at 115,200 baud, and for several windows
 /// of an upload.
@@ -86,7 +87,10 @@ fn handle() {
     COUNT.store(count().wrapping_add(1), Ordering::Relaxed);
     let unexpected = interrupt::dispatch(cpu::interrupts_pending(), |interrupt| match interrupt {
         Interrupt::Uart => UART.on_interrupt(),
-        Interrupt::Scanout => scanout::acknowledge_vblank(),
+        Interrupt::Scanout => {
+            scanout::acknowledge_vblank();
+            supervision::on_blanking();
+        }
         Interrupt::Triangle => triangle::acknowledge(),
         Interrupt::Raymarch => raymarch::acknowledge(),
         Interrupt::Gesture if GESTURE.is_built => {

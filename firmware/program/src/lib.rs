@@ -92,6 +92,9 @@ pub mod renderer;
 #[cfg(target_arch = "riscv32")]
 #[allow(unsafe_code)] // Polls a pinned future from interrupts.
 pub mod sensor;
+#[cfg(target_arch = "riscv32")]
+#[allow(unsafe_code)] // Names the linker's symbol of the stack.
+mod supervision;
 
 pub use aligned::Aligned;
 pub use board::{Board, Button, Motion};

@@ -21,6 +21,7 @@ use crate::program::Program;
 use crate::renderer::Renderer;
 use crate::sensor::{self, Imu, Inbox};
 use crate::shapes::Shapes;
+use crate::supervision;
 
 /// Longest time to wait for a serial line that accepts no text; then the text is dropped.
 const SEND_TIMEOUT: Duration = Duration::from_millis(500);
@@ -68,6 +69,7 @@ pub fn run<P: Program>() -> ! {
     let mut notes = Notes::default();
     let mut rate = 0;
     loop {
+        supervision::on_picture();
         read(&mut board, &devices, &mut imu, clock);
         program.update(&mut board);
         let log = board.end();
@@ -111,6 +113,8 @@ fn read(board: &mut Board, devices: &Devices, imu: &mut Imu, clock: Clock) {
 
 /// Reads what must be read more often than once a picture: the buttons, and the samples of the sensor.
 fn poll(board: &mut Board, devices: &Devices, imu: &mut Imu, clock: Clock) {
+    // Drawing by the soft core, which calls this function, may take long.
+    supervision::on_picture();
     board.sample_buttons(time(clock), devices.buttons.read());
     if IMU.is_built {
         sensor::deliver_each(imu, &mut |imu| {

@@ -48,7 +48,7 @@ impl fmt::Display for PictureError {
                 "subjects of a picture: expected meshes, a field with at most one mesh, the edges of a mesh, or lines",
             ),
             Self::View(error) => write!(f, "camera: {error}"),
-            Self::Matrix(error) => write!(f, "model matrix: {error}"),
+            Self::Matrix(error) => error.fmt(f),
             Self::Lines(error) => write!(f, "lines: {error}"),
         }
     }

@@ -162,7 +162,10 @@ fn compile(
 }
 
 /// Writes a file only if its contents change, to avoid a rebuild of everything that depends on it.
-fn write(path: &Path, bytes: &[u8]) -> Result<()> {
+///
+/// # Errors
+/// The file cannot be written.
+pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     if fs::read(path).is_ok_and(|old| old == bytes) {
         return Ok(());
     }

@@ -14,6 +14,7 @@ mod gateware;
 mod generated;
 mod modules;
 mod paths;
+mod programs;
 mod report;
 mod resources;
 mod run;
@@ -76,6 +77,8 @@ enum Task {
         #[arg(long, value_delimiter = ',')]
         features: Vec<String>,
     },
+    /// Build the example programs of `firmware/examples`, for `glint board --web --firmware FILE`
+    Programs,
     /// Build the live page with the emulated board, as a folder of files for any web server
     Web {
         /// Folder to write [default: target/web]
@@ -160,6 +163,7 @@ fn main() -> Result<()> {
             }
             Ok(())
         }
+        Task::Programs => programs::build(),
         Task::Web { out } => web::build(out.as_deref()),
         Task::Demo { arguments } => demo::demo(&arguments),
         Task::Test { clock: None } => test::test(),

@@ -1,0 +1,55 @@
+//! Supervision of a program: at each vertical blanking, an endless loop and a stack that grows without bound are found. They end the
+//! program with a message, as a panic does.
+
+use core::sync::atomic::{AtomicU32, Ordering};
+
+use riscv::register::mepc;
+
+use crate::panic;
+
+/// Vertical blankings without a picture after which a program counts as looping: ten seconds.
+const LONGEST: u32 = 600;
+/// Bytes of the stack that a program may use. The stack has 6 MB more. Between two vertical blankings the soft core cannot write so
+/// much, so a recursion is found before it overwrites the variables; large arrays that are never written can escape.
+const STACK: usize = 1 << 20;
+
+/// Vertical blankings since the last picture, from 1; 0 before supervision starts.
+static BLANKINGS: AtomicU32 = AtomicU32::new(0);
+
+unsafe extern "C" {
+    static _stack_start: u8;
+}
+
+/// Starts the supervision, or continues it for the next picture.
+pub fn on_picture() {
+    BLANKINGS.store(1, Ordering::Relaxed);
+}
+
+/// Checks the interrupted program. Call this in the interrupt of the vertical blanking.
+pub fn on_blanking() {
+    let blankings = BLANKINGS.load(Ordering::Relaxed);
+    if blankings == 0 {
+        return;
+    }
+    // Only interrupts and `on_picture` write this number, and an interrupt is not interrupted.
+    BLANKINGS.store(blankings + 1, Ordering::Relaxed);
+    let here = 0_u8;
+    let used = (&raw const _stack_start).addr() - (&raw const here).addr();
+    if used > STACK {
+        BLANKINGS.store(0, Ordering::Relaxed);
+        panic::report(format_args!(
+            "stack overflow: {} KB are in use, expected at most {} KB; an endless recursion? at {:#010x}",
+            used >> 10,
+            STACK >> 10,
+            mepc::read()
+        ));
+    }
+    if blankings > LONGEST {
+        BLANKINGS.store(0, Ordering::Relaxed);
+        panic::report(format_args!(
+            "no picture for {} seconds: an endless loop? at {:#010x}",
+            LONGEST / 60,
+            mepc::read()
+        ));
+    }
+}

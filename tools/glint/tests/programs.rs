@@ -1,0 +1,271 @@
+//! The example programs, with scripted buttons and switches, on the emulated board; one also on the virtual board.
+
+use glint::board::{self, EmulatedBoard, SimulatedBoard, Simulation};
+use glint::imu::sensor;
+use glint::program;
+use glint_board_api::{Frame, Uart, built};
+use glint_core::colour::Rgb565;
+use litex_pac::BUILD_ID;
+use std::fs;
+
+/// Clock cycles in a hundredth of a second.
+const CENTISECOND: u64 = 812_500;
+/// Longest time until an expected text.
+const LIMIT: u64 = 20 * 81_250_000;
+
+/// The ELF file of a program.
+fn elf(name: &str) -> Vec<u8> {
+    let file = format!("firmware/programs/{name}.elf");
+    fs::read(built::find(&file, "cargo xtask programs").unwrap()).unwrap()
+}
+
+/// The memory image of a program.
+fn image(name: &str) -> Vec<u8> {
+    let file = format!("firmware/programs/{name}.elf");
+    program::read(&built::find(&file, "cargo xtask programs").unwrap()).unwrap()
+}
+
+fn start(name: &str) -> SimulatedBoard<EmulatedBoard> {
+    board::emulated(&image(name)).unwrap()
+}
+
+/// Runs for a time in hundredths of a second, with these buttons held, and returns the frame on the monitor.
+fn run_for(board: &mut SimulatedBoard<EmulatedBoard>, buttons: u8, centiseconds: u64) -> Frame {
+    board.inner().set_buttons(buttons);
+    board.run(centiseconds * CENTISECOND);
+    let (_, frame) = board.inner().new_frame(0).unwrap().unwrap();
+    frame
+}
+
+/// Number of pixels of a frame for which `is_wanted`.
+fn count(frame: &Frame, is_wanted: impl Fn([u8; 3]) -> bool) -> usize {
+    let colours = frame.pixels.iter().map(|&pixel| Rgb565(pixel).to_rgb888());
+    colours.filter(|&colour| is_wanted(colour)).count()
+}
+
+/// The output since the last call.
+fn said(board: &mut SimulatedBoard<EmulatedBoard>) -> String {
+    String::from_utf8_lossy(&std::mem::take(board.inner().uart_output())).into_owned()
+}
+
+#[test]
+fn the_cube_turns_and_stands_while_the_button_is_down() {
+    let mut board = start("cube");
+    let first = run_for(&mut board, 0, 20);
+    let second = run_for(&mut board, 0, 10);
+    assert_ne!(first, second);
+    let held = run_for(&mut board, 1, 10);
+    assert_eq!(run_for(&mut board, 1, 20), held);
+    assert_ne!(run_for(&mut board, 0, 10), held);
+    // The left half of the digits shows the pictures per second.
+    assert_ne!(board.inner().digits()[..4], [0; 4]);
+    assert!(said(&mut board).contains("cube: hold button 0 to stop it\r\n"));
+}
+
+#[test]
+fn the_solar_system_has_a_sun_and_stops_at_speed_0() {
+    let mut board = start("solar");
+    let before = run_for(&mut board, 0, 20);
+    assert!(count(&before, |[r, g, b]| r > 200 && g > 150 && b < 160) > 2_000);
+    // Each press of button 1 halves the speed: 8, 4, 2, 1, 0 eighths.
+    for _ in 0..4 {
+        run_for(&mut board, 2, 4);
+        run_for(&mut board, 0, 4);
+    }
+    let standing = run_for(&mut board, 0, 10);
+    assert_eq!(run_for(&mut board, 0, 10), standing);
+    run_for(&mut board, 4, 4);
+    assert_ne!(run_for(&mut board, 0, 20), standing);
+}
+
+#[test]
+fn the_flight_turns_by_the_buttons_or_the_sensor() {
+    let mut board = start("flight");
+    let ahead = run_for(&mut board, 0, 15);
+    // The sky at the end of the tunnel is in the middle of the picture.
+    let is_sky = |[_, _, b]: [u8; 3]| b > 200;
+    // An eighth of a turn to the right, the end is at the edge of the picture.
+    let aside = run_for(&mut board, 8, 100);
+    let in_middle = |frame: &Frame| frame.pixels[frame.pixels.len() / 2 + frame.width / 2];
+    let [ahead, aside] = [ahead, aside].map(|frame| Rgb565(in_middle(&frame)).to_rgb888());
+    assert!(is_sky(ahead) && !is_sky(aside), "{ahead:?}, {aside:?}");
+
+    let mut board = start("flight");
+    board.inner().plug(sensor::virtual_sensor(None));
+    let by_sensor = run_for(&mut board, 0, 40);
+    // The buttons have no effect while a sensor steers.
+    assert!(count(&by_sensor, |[_, g, _]| g > 60) > 10_000);
+}
+
+#[test]
+fn the_fighter_ends_after_three_crashes_and_starts_again() {
+    let mut board = start("fighter");
+    run_for(&mut board, 8, 1);
+    let text = board.inner().read_until("lives 0\r\n", LIMIT).unwrap();
+    assert!(
+        text.contains("lives 2\r\n") && text.contains("lives 1\r\n"),
+        "{text}"
+    );
+    let over = run_for(&mut board, 0, 10);
+    assert!(
+        count(&over, |[r, g, _]| r > 200 && g < 50) > 300,
+        "red text"
+    );
+    assert_eq!(board.inner().leds(), 0);
+    run_for(&mut board, 1, 10);
+    assert!(said(&mut board).contains("fly through the gates"));
+    assert_eq!(board.inner().leds(), 7);
+}
+
+#[test]
+fn the_bench_of_kernels_prints_its_cycles() {
+    let mut board = start("kernel");
+    for name in ["library", "digit by digit", "newton"] {
+        let line = board
+            .inner()
+            .read_until("cycles a root\r\n", LIMIT)
+            .unwrap();
+        let cycles = line.rsplit_once(&format!("{name}: ")).unwrap().1;
+        let cycles: u32 = cycles.split_once(' ').unwrap().0.parse().unwrap();
+        assert!((20..1_000).contains(&cycles), "{line}");
+    }
+}
+
+#[test]
+fn the_oscilloscope_draws_gravity_and_holds_its_picture() {
+    let mut board = start("scope");
+    let blank = run_for(&mut board, 0, 10);
+    board.inner().plug(sensor::virtual_sensor(None));
+    // The trace of z is half of the range of 2 g above the middle: at line 105 of 360, drawn twice as large.
+    run_for(&mut board, 0, 150);
+    let moving = run_for(&mut board, 0, 10);
+    assert_ne!(moving, blank);
+    let width = moving.width;
+    let scale = moving.height / 360;
+    let rows = moving.pixels.chunks(width);
+    let is_z = |&pixel: &u16| {
+        let [r, g, b] = Rgb565(pixel).to_rgb888();
+        b > 200 && r < 100 && g > 100
+    };
+    let found: usize = rows
+        .skip(95 * scale)
+        .take(20 * scale)
+        .flatten()
+        .filter(|p| is_z(p))
+        .count();
+    assert!(found > 300 * scale, "{found} pixels of the trace z");
+    run_for(&mut board, 4, 4);
+    let held = run_for(&mut board, 0, 10);
+    assert_eq!(board.inner().leds(), 1);
+    assert_eq!(run_for(&mut board, 0, 20), held);
+}
+
+#[test]
+fn faults_are_told_by_name_and_enter_restarts() {
+    let mut board = start("faults");
+    for (switches, fault) in [
+        (1, "panicked at firmware/program/../examples/faults.rs"),
+        (
+            1 << 1,
+            "no picture for 10 seconds: an endless loop? at 0x40",
+        ),
+        (1 << 2, "stack overflow: "),
+        (
+            1 << 3,
+            "picture: matrix row 1: (0, 0, 0): expected a length",
+        ),
+        (1 << 4, "trap: illegal instruction (mcause 2) at 0x40"),
+    ] {
+        board
+            .inner()
+            .read_until("switches 0 to 4\r\n", LIMIT)
+            .unwrap();
+        board.inner().set_switches(switches);
+        let text = board
+            .inner()
+            .read_until("press Enter to restart\r\n", LIMIT);
+        let text = text.unwrap();
+        assert!(text.contains(fault), "expected {fault:?} in {text}");
+        board.inner().set_switches(0);
+        board.inner().uart_write(b"\r");
+    }
+    board
+        .inner()
+        .read_until("switches 0 to 4\r\n", LIMIT)
+        .unwrap();
+}
+
+#[test]
+fn a_program_for_other_gateware_is_refused_by_file_and_by_itself() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("cube.elf");
+    let mut file = elf("cube");
+    let id = BUILD_ID.to_le_bytes();
+    let starts: Vec<_> = (0..file.len() - 4)
+        .filter(|&at| file[at..at + 4] == id)
+        .collect();
+    for &at in &starts {
+        file[at] ^= 0xff;
+    }
+    fs::write(&path, &file).unwrap();
+    let error = program::read(&path).unwrap_err().to_string();
+    let other = BUILD_ID ^ 0xff;
+    let expected = format!(
+        "found a program for gateware {other:#010x}, while these boards have {BUILD_ID:#010x}"
+    );
+    assert!(error.contains(&expected), "{error}");
+
+    let mut image = image("cube");
+    let starts: Vec<_> = (0..image.len() - 4)
+        .filter(|&at| image[at..at + 4] == id)
+        .collect();
+    for at in starts {
+        image[at] ^= 0xff;
+    }
+    let mut board = board::emulated(&image).unwrap();
+    let text = board
+        .inner()
+        .read_until("press Enter to restart\r\n", LIMIT);
+    let text = text.unwrap();
+    let expected = format!("built for gateware {other:#010x}, found {BUILD_ID:#010x}");
+    assert!(text.contains(&expected), "{text}");
+}
+
+#[test]
+fn elf_files_of_other_programs_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("other.elf");
+    let mut file = elf("kernel");
+    // Without the names of its symbols, the file was not linked with Glint's memory map.
+    let name = b"_windows_end\0";
+    let at = file
+        .windows(name.len())
+        .position(|part| part == name)
+        .unwrap();
+    file[at] = b'x';
+    fs::write(&path, &file).unwrap();
+    let error = program::read(&path).unwrap_err().to_string();
+    assert!(error.contains("without the symbol _windows_end"), "{error}");
+    fs::write(&path, &file[..1000]).unwrap();
+    let error = program::read(&path).unwrap_err().to_string();
+    assert!(error.contains("an ELF file that is damaged"), "{error}");
+}
+
+#[test]
+fn the_fighter_runs_on_the_verilated_soc() {
+    let mut board = board::verilated(&image("fighter")).unwrap();
+    board
+        .inner()
+        .read_until("fly through the gates\r\n", LIMIT)
+        .unwrap();
+    // The first frames on the monitor are black.
+    let mut last = 0;
+    let is_shown = board.inner().run_until(LIMIT, |board| {
+        let frame = board.new_frame(last).unwrap();
+        frame.is_some_and(|(number, frame)| {
+            last = number;
+            count(&frame, |[r, g, b]| g > 100 && r < 50 && b < 50) > 500
+        })
+    });
+    assert!(is_shown);
+}

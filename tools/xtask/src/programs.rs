@@ -1,0 +1,57 @@
+//! `cargo xtask programs`: builds the example programs for the soft core.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use anyhow::{Context, Result};
+use glint_program_image as image;
+use litex_pac::memories::MAIN_RAM;
+
+use crate::firmware::{TARGET, write};
+use crate::{paths, run};
+
+/// Builds every program of `firmware/examples`. The ELF files are `target/firmware/programs/NAME.elf`.
+///
+/// # Errors
+/// A program does not compile, or is no program for the virtual board.
+pub fn build() -> Result<()> {
+    let built = paths::target().join("firmware-build");
+    let mut cargo = Command::new("cargo");
+    cargo.args(["build", "--package", "glint-program", "--examples"]);
+    cargo.args(["--profile", "firmware", "--target", TARGET]);
+    cargo.arg("--target-dir").arg(&built);
+    cargo.current_dir(paths::root());
+    run::step("build the example programs", &mut cargo)?;
+    let folder = paths::target().join("firmware/programs");
+    fs::create_dir_all(&folder).with_context(|| format!("creating {}", folder.display()))?;
+    for name in names()? {
+        let elf = built.join(TARGET).join("firmware/examples").join(&name);
+        let elf = fs::read(&elf).with_context(|| format!("reading {}", elf.display()))?;
+        let image = image::of_elf(&elf, MAIN_RAM.size.into()).with_context(|| name.clone())?;
+        let path = folder.join(&name).with_extension("elf");
+        write(&path, &elf)?;
+        let path = Path::new("target/firmware/programs").join(&name);
+        let (path, length) = (path.with_extension("elf"), image.len());
+        run::print_progress(&format!("  {}: {length} bytes in memory", path.display()));
+    }
+    Ok(())
+}
+
+/// The names of the programs, in order.
+fn names() -> Result<Vec<String>> {
+    let folder = paths::root().join("firmware/examples");
+    let files = fs::read_dir(&folder).with_context(|| format!("reading {}", folder.display()))?;
+    let mut names = Vec::new();
+    for file in files {
+        let path = file?.path();
+        if path.extension().is_some_and(|extension| extension == "rs") {
+            names.extend(
+                path.file_stem()
+                    .map(|name| name.to_string_lossy().into_owned()),
+            );
+        }
+    }
+    names.sort();
+    Ok(names)
+}
