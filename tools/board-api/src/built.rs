@@ -28,13 +28,20 @@ pub struct NotBuilt {
 /// No folder contains the file.
 pub fn find(file: &str, command: &'static str) -> Result<PathBuf, NotBuilt> {
     let file = Path::new("target").join(file);
+    let folders = folders();
+    let folders: Vec<_> = folders.iter().map(PathBuf::as_path).collect();
+    find_in(&folders, file, command)
+}
+
+/// The folders that may be a clone of Glint, as [`find`] searches them.
+pub fn folders() -> Vec<PathBuf> {
     if let Some(home) = env::var_os(HOME) {
-        return find_in(&[Path::new(&home)], file, command);
+        return vec![PathBuf::from(home)];
     }
     let program = env::current_exe().map(|program| program.with_file_name(""));
     let starts = [program, env::current_dir()];
     let folders = starts.iter().flatten().flat_map(|start| start.ancestors());
-    find_in(&folders.collect::<Vec<_>>(), file, command)
+    folders.map(Path::to_owned).collect()
 }
 
 fn find_in(folders: &[&Path], file: PathBuf, command: &'static str) -> Result<PathBuf, NotBuilt> {

@@ -29,6 +29,7 @@ pub mod imu;
 pub mod object;
 pub mod picture;
 pub mod program;
+pub mod project;
 pub mod render;
 pub mod scene;
 pub mod view;

@@ -5,6 +5,7 @@ mod cli;
 
 use clap::Parser;
 use glint::error::{FormatError, InputError};
+use glint::project::ProjectError;
 use glint::render;
 use glint_model::RenderError;
 use glint_scene_file::SceneError;
@@ -37,6 +38,10 @@ fn is_bad_input(error: &(dyn std::error::Error + 'static)) -> bool {
         || error.is::<InputError>()
         || error.is::<FormatError>()
         || error.is::<SceneError>()
+        || matches!(
+            error.downcast_ref(),
+            Some(ProjectError::Name(_) | ProjectError::Exists(_) | ProjectError::NoGlint { .. })
+        )
 }
 
 fn main() -> ExitCode {

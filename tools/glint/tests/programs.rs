@@ -6,7 +6,11 @@ use glint::program;
 use glint_board_api::{Frame, Uart, built};
 use glint_core::colour::Rgb565;
 use litex_pac::BUILD_ID;
-use std::fs;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::{env, fs};
 
 /// Clock cycles in a hundredth of a second.
 const CENTISECOND: u64 = 812_500;
@@ -268,4 +272,68 @@ fn the_fighter_runs_on_the_verilated_soc() {
         })
     });
     assert!(is_shown);
+}
+
+/// A process that ends with this value. `cargo run` becomes the program that it runs.
+struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // The process may have ended.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+#[test]
+fn a_new_project_shows_its_program_in_the_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let glint = Path::new(env!("CARGO_BIN_EXE_glint"));
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let made = Command::new(glint)
+        .args(["new", "hello", "--glint"])
+        .arg(&root)
+        .current_dir(&folder)
+        .output()
+        .unwrap();
+    assert!(made.status.success(), "{made:?}");
+
+    // The runner of the project is the program of this name.
+    let path = format!(
+        "{}:{}",
+        glint.parent().unwrap().display(),
+        env::var("PATH").unwrap()
+    );
+    let run = Command::new("cargo")
+        .args(["run", "--offline", "--quiet"])
+        .current_dir(folder.path().join("hello"))
+        .env("PATH", path)
+        // The library is compiled once for all runs of this test.
+        .env("CARGO_TARGET_DIR", env!("CARGO_TARGET_TMPDIR"))
+        // Cargo sets variables of the tested package, which do not concern the project.
+        .env_remove("CARGO_MANIFEST_DIR")
+        .stdout(Stdio::piped())
+        .spawn();
+    let mut run = Running(run.unwrap());
+    let mut line = String::new();
+    let output = run.0.stdout.take().unwrap();
+    BufReader::new(output).read_line(&mut line).unwrap();
+    let address = line.trim().strip_prefix("http://").unwrap();
+    let (address, path) = address.split_once('/').unwrap();
+    let mut page = TcpStream::connect(address).unwrap();
+    write!(page, "GET /{path} HTTP/1.1\r\nHost: {address}\r\nConnection: close\r\n\r\n").unwrap();
+    let mut text = String::new();
+    page.read_to_string(&mut text).unwrap();
+    assert!(
+        text.starts_with("HTTP/1") && text.contains(" 200 "),
+        "{text}"
+    );
+
+    let elf = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let elf = elf.join("riscv32im-unknown-none-elf/debug/hello");
+    let mut board = board::emulated(&program::read(&elf).unwrap()).unwrap();
+    let greeting = "hello: hold button 0 to stop the cube\r\n";
+    board.inner().read_until(greeting, LIMIT).unwrap();
+    let turning = run_for(&mut board, 0, 30);
+    assert_ne!(turning, run_for(&mut board, 0, 10));
 }

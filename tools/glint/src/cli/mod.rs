@@ -16,6 +16,7 @@ mod imu;
 mod info;
 mod man;
 mod messages;
+mod new;
 mod options;
 mod orbit;
 mod output;
@@ -67,6 +68,7 @@ enum Command {
     Flash(flash::FlashArguments),
     Console(terminal::ConsoleArguments),
     Board(board::BoardArguments),
+    New(new::NewArguments),
     Info(info::InfoArguments),
     Ports(ports::PortsArguments),
     Completions(completions::CompletionsArguments),
@@ -103,6 +105,7 @@ impl Arguments {
             Command::Flash(arguments) => arguments.run(),
             Command::Console(arguments) => arguments.run(),
             Command::Board(arguments) => arguments.run(),
+            Command::New(arguments) => arguments.run(),
             Command::Info(arguments) => arguments.run(),
             Command::Ports(arguments) => arguments.run(),
             Command::Completions(arguments) => arguments.run(Self::command()),
