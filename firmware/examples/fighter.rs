@@ -4,6 +4,7 @@
 #![deny(unsafe_code)]
 
 use glint_program::core::fixed::Q5_11;
+use glint_program::core::picture::Size;
 use glint_program::core::wireframe::{Motion, Viewing, Window};
 use glint_program::graphics::mono_font::ascii::FONT_10X20;
 use glint_program::graphics::pixelcolor::{Rgb565, RgbColor};
@@ -12,7 +13,7 @@ use glint_program::{Board, Button, Canvas, Picture, PictureError, Program};
 
 /// One unit of space in Q5.11.
 const ONE: i32 = 1 << 11;
-/// Gates in flight, and the distance between them.
+/// Gates in flight, and their distance.
 const GATES: usize = 4;
 const APART: i32 = 3 * ONE;
 /// The z of the ship, its largest distance from the middle, and half of the side of a gate.
@@ -104,7 +105,6 @@ impl Program for Fighter {
             }
             return;
         }
-        // A slow picture moves the ship by that of 50 ms.
         let milliseconds = board.step().as_millis().min(50) as i32;
         for (button, axis, sign) in MOVES {
             if board.is_held(button) {
@@ -112,7 +112,6 @@ impl Program for Fighter {
                 self.ship[axis] = (self.ship[axis] + step).clamp(-REACH, REACH);
             }
         }
-        // The speed rises with the score.
         let speed = (3 * ONE + ONE / 4 * self.score.min(20) as i32) * milliseconds / 1000;
         for i in 0..GATES {
             self.gates[i][2] += speed;
@@ -134,6 +133,7 @@ impl Program for Fighter {
     }
 
     fn draw<'p>(&'p self, picture: &mut Picture<'p>) -> Result<(), PictureError> {
+        picture.size = Size::W640;
         picture.wireframe(self.lines.program()?, Motion::default().pose())
     }
 

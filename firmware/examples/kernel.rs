@@ -5,6 +5,7 @@
 use core::hint::black_box;
 
 use glint_program::core::light::Background;
+use glint_program::core::picture::Size as PictureSize;
 use glint_program::graphics::Drawable;
 use glint_program::graphics::geometry::{Point, Size};
 use glint_program::graphics::mono_font::ascii::FONT_10X20;
@@ -78,6 +79,7 @@ impl Program for Bench {
     }
 
     fn draw<'p>(&'p self, picture: &mut Picture<'p>) -> Result<(), PictureError> {
+        picture.size = PictureSize::W640;
         picture.appearance.background = Some(Background::Colour([16, 24, 32]));
         Ok(())
     }

@@ -9,7 +9,7 @@ use glint_program::core::light::{Background, Light, parse_rgb};
 use glint_program::core::matrix::{Axis, Matrix, MatrixError};
 use glint_program::core::mesh::Mesh;
 use glint_program::core::shape::Shape;
-use glint_program::graphics::mono_font::ascii::FONT_9X18;
+use glint_program::graphics::mono_font::ascii::FONT_10X20;
 use glint_program::graphics::pixelcolor::{Rgb565 as Colour, RgbColor};
 use glint_program::{Board, Button, Canvas, Picture, PictureError, Program};
 
@@ -56,7 +56,8 @@ impl Program for Solar {
     fn start(board: &mut Board) -> Self {
         Self {
             sphere: board.shape(Shape::Sphere),
-            angles: [Turns(0); PLANETS.len() + 1],
+            // Apart by the golden angle.
+            angles: core::array::from_fn(|i| Turns(0x61c8_8647_u32.wrapping_mul(i as u32))),
             speed: 8,
         }
     }
@@ -85,7 +86,7 @@ impl Program for Solar {
 
     fn draw<'p>(&'p self, picture: &mut Picture<'p>) -> Result<(), PictureError> {
         picture.view = View::spherical(
-            Q32_32::lit("4"),
+            Q32_32::lit("5"),
             Turns(0),
             Turns::from_degrees(Q32_32::lit("62")),
         )?;
@@ -113,7 +114,7 @@ impl Program for Solar {
     fn paint(&self, canvas: &mut Canvas) {
         let (sign, speed) = (if self.speed < 0 { "-" } else { "" }, self.speed.abs());
         let text = format_args!("speed {sign}{}.{:03}", speed / 8, speed % 8 * 125);
-        canvas.text([12, 8], &FONT_9X18, Colour::WHITE, text);
+        canvas.text([12, 8], &FONT_10X20, Colour::WHITE, text);
     }
 }
 

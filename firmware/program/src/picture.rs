@@ -4,6 +4,7 @@ use core::fmt;
 
 use glint_core::appearance::Appearance;
 use glint_core::camera::{View, ViewError};
+use glint_core::feature::WIREFRAME;
 use glint_core::field::Field;
 use glint_core::light::Background;
 use glint_core::matrix::{Matrix, MatrixError};
@@ -49,7 +50,8 @@ impl fmt::Display for PictureError {
             ),
             Self::View(error) => write!(f, "camera: {error}"),
             Self::Matrix(error) => error.fmt(f),
-            Self::Lines(error) => write!(f, "lines: {error}"),
+            Self::Lines(error) if WIREFRAME.is_built => write!(f, "lines: {error}"),
+            Self::Lines(_) => WIREFRAME.fmt(f),
         }
     }
 }

@@ -1,16 +1,20 @@
 //! The example programs, with scripted buttons and switches, on the emulated board; one also on the virtual board.
 
 use glint::board::{self, EmulatedBoard, SimulatedBoard, Simulation};
+use glint::imu::log::Entry;
 use glint::imu::sensor;
 use glint::program;
 use glint_board_api::{Frame, Uart, built};
 use glint_core::colour::Rgb565;
+use glint_core::digits;
 use litex_pac::BUILD_ID;
+use std::fs::File;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::{env, fs};
+use virtual_board::virtual_mpu6050::Wires;
 
 /// Clock cycles in a hundredth of a second.
 const CENTISECOND: u64 = 812_500;
@@ -321,7 +325,11 @@ fn a_new_project_shows_its_program_in_the_page() {
     let address = line.trim().strip_prefix("http://").unwrap();
     let (address, path) = address.split_once('/').unwrap();
     let mut page = TcpStream::connect(address).unwrap();
-    write!(page, "GET /{path} HTTP/1.1\r\nHost: {address}\r\nConnection: close\r\n\r\n").unwrap();
+    write!(
+        page,
+        "GET /{path} HTTP/1.1\r\nHost: {address}\r\nConnection: close\r\n\r\n"
+    )
+    .unwrap();
     let mut text = String::new();
     page.read_to_string(&mut text).unwrap();
     assert!(
@@ -336,4 +344,130 @@ fn a_new_project_shows_its_program_in_the_page() {
     board.inner().read_until(greeting, LIMIT).unwrap();
     let turning = run_for(&mut board, 0, 30);
     assert_ne!(turning, run_for(&mut board, 0, 10));
+}
+
+/// The programs of docs/report/programs.md, with the buttons that are held for their pictures.
+const PROGRAMS: [(&str, u8); 6] = [
+    ("cube", 0),
+    ("solar", 0),
+    ("flight", 0),
+    ("fighter", 8),
+    ("kernel", 0),
+    ("scope", 0),
+];
+
+/// A shaken sensor: damped swings along x and y, gravity along z.
+fn shaken() -> Wires {
+    let entries = (0..2_000).map(|t: i32| {
+        let swing = |period: i32| {
+            let phase = f64::from(t) * std::f64::consts::TAU / f64::from(period);
+            (phase.sin() * 5_000.0 * (-f64::from(t % 700) / 250.0).exp()) as i16
+        };
+        Entry {
+            line: 0,
+            t_us: 1_000 * u64::from(t.unsigned_abs()),
+            accel: [swing(90), swing(140), 4096 + swing(45) / 4],
+            gyro: [0; 3],
+            temp: None,
+        }
+    });
+    sensor::virtual_sensor(Some(&entries.collect::<Vec<_>>()))
+}
+
+/// Colours of a picture of 640×360 pixels: means of squares of the frame's pixels.
+fn of_page(frame: &Frame) -> Vec<u8> {
+    let scale = frame.width / 640;
+    assert_eq!([frame.width, frame.height], [640 * scale, 360 * scale]);
+    let at = |x: usize, y: usize| Rgb565(frame.pixels[y * frame.width + x]).to_rgb888();
+    let mean = |column: usize, row: usize, channel: usize| {
+        let places =
+            (0..scale * scale).map(|i| (column * scale + i % scale, row * scale + i / scale));
+        let sum: usize = places.map(|(x, y)| usize::from(at(x, y)[channel])).sum();
+        (sum / (scale * scale)) as u8
+    };
+    let pixels = (0..360).flat_map(|row| (0..640).map(move |column| (column, row)));
+    pixels
+        .flat_map(|(column, row)| [0, 1, 2].map(|channel| mean(column, row, channel)))
+        .collect()
+}
+
+#[test]
+fn the_pages_of_programs_show_their_pictures_sizes_and_rates() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let updates = env::var_os("GLINT_UPDATE").is_some();
+    let path = root.join("docs/report/programs.md");
+    let mut page = fs::read_to_string(&path).unwrap();
+    for (name, buttons) in PROGRAMS {
+        let image = image(name);
+        let mut board = board::emulated(&image).unwrap();
+        if name == "scope" {
+            board.inner().plug(shaken());
+        }
+        let frame = run_for(&mut board, buttons, 140);
+        // Another compiler draws at slightly other times, so the pictures may differ slightly.
+        let shown = root.join(format!("docs/pictures/program-{name}.png"));
+        let found = of_page(&frame);
+        if updates {
+            let mut encoder = png::Encoder::new(File::create(&shown).unwrap(), 640, 360);
+            encoder.set_color(png::ColorType::Rgb);
+            encoder.set_compression(png::Compression::High);
+            encoder
+                .write_header()
+                .unwrap()
+                .write_image_data(&found)
+                .unwrap();
+        }
+        let file = BufReader::new(File::open(&shown).unwrap());
+        let mut reader = png::Decoder::new(file).read_info().unwrap();
+        let mut expected = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut expected).unwrap();
+        assert_eq!(expected.len(), found.len(), "{name}");
+        let pairs = expected.iter().zip(&found);
+        let difference: u64 = pairs.map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
+        let mean = difference as f64 / found.len() as f64;
+        assert!(
+            mean < 8.0,
+            "{name}: mean difference of {mean:.1} of 255 to docs/pictures"
+        );
+
+        let digits = &board.inner().digits()[..4];
+        let digit =
+            |lit: &u8| (0..10).find(|&digit| digits::segments(char::from(b'0' + digit)) == *lit);
+        let rate = match name {
+            // Its digits show the score.
+            "fighter" => None,
+            _ => Some(
+                digits
+                    .iter()
+                    .filter_map(digit)
+                    .fold(0, |n, digit| 10 * n + u32::from(digit)),
+            ),
+        };
+        let start = page.find(&format!("\n| {name} | ")).unwrap() + 1;
+        let end = start + page[start..].find('\n').unwrap();
+        let cells: Vec<_> = page[start..end].split('|').map(str::trim).collect();
+        let [_, _, picture, stated_rate, stated_size, _] = cells[..] else {
+            panic!("{name}: {cells:?}");
+        };
+        let shown_rate = rate.map_or("–".to_owned(), |rate| rate.to_string());
+        if updates {
+            let row = format!("| {name} | {picture} | {shown_rate} | {} |", image.len());
+            page.replace_range(start..end, &row);
+        } else {
+            let is_near = |stated: &str, found: f64| {
+                let stated: f64 = stated.replace(',', "").parse().unwrap();
+                (stated - found).abs() < 0.05 * found
+            };
+            assert!(
+                is_near(stated_size, image.len() as f64),
+                "{name}: {} bytes",
+                image.len()
+            );
+            let rate_is_near = rate.is_none_or(|rate| is_near(stated_rate, rate.into()));
+            assert!(rate_is_near, "{name}: {rate:?} pictures per second");
+        }
+    }
+    if updates {
+        fs::write(&path, page).unwrap();
+    }
 }
