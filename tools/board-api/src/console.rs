@@ -209,19 +209,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
     /// [`ConsoleError::Silence`] if the board does not answer, [`ConsoleError::Bios`] if only its
     /// BIOS answers.
     pub fn synchronise(&mut self) -> Result<(), ConsoleError> {
-        self.synchronise_within(self.patience_ms)
-    }
-
-    /// Synchronises as [`synchronise`](Self::synchronise), but waits at most `patience_ms`
-    /// milliseconds for the answer to an attempt.
-    ///
-    /// # Errors
-    /// As for [`synchronise`](Self::synchronise).
-    pub fn synchronise_within(&mut self, patience_ms: u64) -> Result<(), ConsoleError> {
-        let usual_ms = std::mem::replace(&mut self.patience_ms, patience_ms);
-        let result = self.within(patience_ms, Self::find_firmware);
-        self.patience_ms = usual_ms;
-        result
+        self.within(self.patience_ms, Self::find_firmware)
     }
 
     fn find_firmware(&mut self) -> Result<(), ConsoleError> {

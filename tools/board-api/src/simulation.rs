@@ -125,6 +125,16 @@ pub trait Simulation: Uart {
     /// The range is not in main memory.
     fn write_memory(&mut self, address: u32, bytes: &[u8]) -> Result<(), BoardError>;
 
+    /// Replaces the program by the memory image `program`, and resets the board, which then starts it. Connected devices stay.
+    ///
+    /// # Errors
+    /// The image exceeds main memory, or this board starts only with its first program.
+    fn boot(&mut self, program: &[u8]) -> Result<(), BoardError> {
+        let _ = program;
+        let error = "this board keeps its first program: end it, and start it with --firmware";
+        Err(BoardError::simulation(error))
+    }
+
     /// Connects a motion sensor to the I2C bus; replaces the connected sensor, if any.
     fn plug(&mut self, sensor: Wires);
 

@@ -10,7 +10,6 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use emulated_board::EmulatedBoard;
-use glint_board_api::console::{Console, ConsoleError};
 use glint_board_api::pace::Clock;
 use glint_board_api::{BoardError, SimulatedBoard};
 use glint_live_page::{Channels, Live, LiveSimulation, Message, Session, Viewer};
@@ -92,10 +91,9 @@ pub extern "C" fn start() {
     }
 }
 
-fn opened(firmware: &[u8]) -> Result<Page, ConsoleError> {
+fn opened(firmware: &[u8]) -> Result<Page, BoardError> {
     let board = EmulatedBoard::fast(firmware).map_err(BoardError::simulation)?;
-    let mut board = SimulatedBoard::new(board);
-    Console::new(&mut board).greet()?;
+    let board = SimulatedBoard::new(board);
     let live: &mut dyn Live = Box::leak(Box::new(LiveSimulation::new(
         board,
         SAMPLE_PERIOD,

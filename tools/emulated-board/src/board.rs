@@ -177,6 +177,14 @@ impl Uart for EmulatedBoard {
 }
 
 impl Simulation for EmulatedBoard {
+    fn boot(&mut self, program: &[u8]) -> Result<(), BoardError> {
+        self.write_memory(MAIN_RAM.base, program)?;
+        self.bus.set_rom(&jump(MAIN_RAM.base));
+        self.bus.devices.reset();
+        self.cpu.reset();
+        Ok(())
+    }
+
     fn set_buttons(&mut self, pressed: u8) {
         self.bus.devices.buttons.set(pressed.into());
     }

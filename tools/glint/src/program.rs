@@ -6,17 +6,10 @@ use glint_core::flash::Image;
 use glint_program_image as image;
 use std::path::Path;
 
-/// Length of an instruction in bytes.
-const INSTRUCTION: usize = 4;
 /// Size in bytes of the largest main memory of the supported boards.
 const MEMORY: usize = 128 << 20;
 /// Number of bytes at the start of a file that decide whether it is a text.
 const START: usize = 256;
-
-/// Values of the lowest seven bits of an RV32IM instruction.
-const OPCODES: [u8; 11] = [
-    0x03, 0x0f, 0x13, 0x17, 0x23, 0x33, 0x37, 0x63, 0x67, 0x6f, 0x73,
-];
 
 /// Reads the file at `path`, or standard input: a flat binary, which is checked, or an ELF file, whose memory image is returned.
 ///
@@ -41,7 +34,7 @@ pub fn check(bytes: &[u8], path: &Path) -> Result<(), InputError> {
     let flat = "a flat binary that begins with an RV32IM instruction";
     let error =
         |expected: &str, found: String| Err(FormatError::whole(expected, found).in_path(path));
-    let Some(first) = bytes.first_chunk::<INSTRUCTION>() else {
+    let Some(first) = bytes.first_chunk::<4>() else {
         return error(flat, format!("a file of {} bytes", bytes.len()));
     };
     let start = bytes.get(..START).unwrap_or(bytes);
@@ -52,7 +45,7 @@ pub fn check(bytes: &[u8], path: &Path) -> Result<(), InputError> {
         let found = "an image of the flash, which `glint flash --spi` writes";
         return error(flat, found.to_owned());
     }
-    if !OPCODES.contains(&(first[0] & 0x7f)) {
+    if !image::is_flat(bytes) {
         return error(flat, format!("the bytes {first:02x?}"));
     }
     Ok(())

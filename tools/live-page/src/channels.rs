@@ -30,6 +30,17 @@ pub enum Request {
     Picture,
     /// Uploads a mesh or a texture, and shows it.
     Upload(Upload),
+    /// Starts a program in place of the running one.
+    Start(Program),
+}
+
+/// A program for the soft core.
+#[derive(Debug)]
+pub struct Program {
+    /// Name of its file.
+    pub name: String,
+    /// Its memory image.
+    pub image: Vec<u8>,
 }
 
 /// A mesh or a texture to upload.
@@ -52,7 +63,7 @@ impl Request {
         let command = match self {
             Self::Help(command) => command,
             Self::Command(_) | Self::Choose(..) | Self::Interrupt => "",
-            Self::Picture | Self::Upload(_) => "",
+            Self::Picture | Self::Upload(_) | Self::Start(_) => "",
         };
         (discriminant(self), command)
     }
@@ -129,6 +140,15 @@ impl Channels {
     /// Sets the choices of the firmware.
     pub fn set_choices(&self, choices: Choices) {
         *self.lock_choices() = Arc::new(choices);
+    }
+
+    /// Requests the start of a program. If the queue is full, the request is dropped.
+    pub fn start(&self, program: Program) {
+        // Other errors mean that the session has ended, which happens only at the end of the program.
+        if let Err(TrySendError::Full(_)) = self.requests.try_send(Request::Start(program)) {
+            self.hub
+                .notify("the board is busy: a program was dropped", true);
+        }
     }
 
     /// Passes a request of a viewer to the session. If the queue is full, the request is dropped

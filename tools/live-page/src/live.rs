@@ -33,6 +33,15 @@ pub trait Live: Board {
         Ok(None)
     }
 
+    /// Replaces the program by a memory image, and starts it.
+    ///
+    /// # Errors
+    /// The image exceeds main memory, or this board takes no program from the page.
+    fn boot(&mut self, _program: &[u8]) -> Result<(), BoardError> {
+        let error = "a board on a serial port takes a program from `glint flash FILE --board PORT`";
+        Err(BoardError::simulation(error))
+    }
+
     /// Interval of the measurements on the console.
     fn sample_period(&self) -> Duration;
 
@@ -137,6 +146,10 @@ impl<S: Simulation + ?Sized, C: Clock> Live for LiveSimulation<S, C> {
         }
         self.shown.1 = Some(frame.clone());
         Ok(Some(frame))
+    }
+
+    fn boot(&mut self, program: &[u8]) -> Result<(), BoardError> {
+        self.board.inner().boot(program)
     }
 
     fn sample_period(&self) -> Duration {

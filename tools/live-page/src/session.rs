@@ -1,6 +1,6 @@
 //! Runs the board, its console and its transfers for the page.
 
-use crate::channels::{Channels, MAX_REQUESTS, Request, Upload};
+use crate::channels::{Channels, MAX_REQUESTS, Program, Request, Upload};
 use crate::choices::{Choices, List};
 use crate::hub::Hub;
 use crate::inputs::Inputs;
@@ -27,10 +27,13 @@ const POLL_MS: u64 = 2;
 /// The key Ctrl-C, which cancels the running command.
 const INTERRUPT: &[u8] = b"\x03";
 
-/// Time-out of the first replies of a simulated board in ms of its time. Such a board has just
-/// started, and its program may be one without a prompt. A board on a serial port has already
-/// answered.
+/// Time in ms of a simulated board's time in which a firmware that has just started prints its prompt. The program may be one without a
+/// prompt. A board on a serial port has already answered.
 const FIRST_PATIENCE_MS: u64 = 1_000;
+
+/// Note on a program without a prompt.
+const NO_PROMPT: &str =
+    "The program has no prompt: scenes, meshes and fields are those of the firmware.";
 
 /// Interval in ms of the board's time between two pictures of a moving field.
 const FRAME_MS: u64 = 40;
@@ -171,11 +174,50 @@ impl<'a> Session<'a> {
             has_prompt: false,
             end: Vec::new(),
         };
-        session.has_prompt = session.try_ask(synchronise)?;
-        if session.has_prompt {
-            session.update_lists()?;
+        if !session.meet()? {
+            session.hub.notify(NO_PROMPT, false);
         }
         Ok(session)
+    }
+
+    /// Finds out whether the running program has a prompt, and sends its lists. A simulated board has just started; nothing is sent to its
+    /// program, which may be one without a prompt.
+    fn meet(&mut self) -> Result<bool, BoardError> {
+        self.has_prompt = false;
+        if self.board.memory().is_some() {
+            let end = self.board.now_ms() + FIRST_PATIENCE_MS;
+            while !self.has_prompt && self.board.now_ms() < end {
+                let mut output = Vec::new();
+                self.board.read(&mut output, POLL_MS)?;
+                self.pass(&mut output)?;
+            }
+        } else {
+            self.has_prompt = self.try_ask(|console, _| Ok(console.synchronise()?))?;
+        }
+        if self.has_prompt {
+            self.update_lists()?;
+        }
+        Ok(self.has_prompt)
+    }
+
+    /// Starts a program in place of the running one. The pages get its lists, which are empty for a program without a prompt.
+    fn start_program(&mut self, program: &Program) -> Result<(), BoardError> {
+        let Program { name, image } = program;
+        if let Err(error) = self.board.board.boot(image) {
+            self.hub.notify(format!("{name}: {error}"), true);
+            return Ok(());
+        }
+        self.waiting.clear();
+        self.frames.clear();
+        self.orbit = None;
+        self.end.clear();
+        self.send_lists(Vec::new(), Choices::default());
+        let size = image.len();
+        let has_prompt = self.meet()?;
+        let note = if has_prompt { "" } else { NO_PROMPT };
+        let text = format!("{name} runs, {size} bytes. {note}");
+        self.hub.notify(text.trim_end(), false);
+        Ok(())
     }
 
     /// Time by which the board is ahead of its clock, for a clock that cannot wait.
@@ -197,6 +239,7 @@ impl<'a> Session<'a> {
                 Some(Request::Command(line)) => self.type_line(&line),
                 Some(Request::Choose(list, name)) => self.choose(list, &name),
                 Some(Request::Interrupt) => self.board.write(INTERRUPT),
+                Some(Request::Start(program)) => self.start_program(&program),
                 Some(request @ (Request::Help(_) | Request::Picture | Request::Upload(_))) => {
                     self.keep(request);
                     Ok(())
@@ -223,6 +266,7 @@ impl<'a> Session<'a> {
             }
             Some(Request::Picture) => self.ask(send_picture),
             Some(Request::Interrupt) => Ok(()),
+            Some(Request::Start(program)) => self.start_program(&program),
             None => self.use_rest(),
         }
     }
@@ -399,9 +443,9 @@ impl<'a> Session<'a> {
 
     /// Reads the firmware's lists, and sends them to the pages.
     fn update_lists(&mut self) -> Result<(), BoardError> {
-        let mut choices = Choices::default();
+        let (mut choices, mut listed) = (Choices::default(), Vec::new());
         let up = self.up;
-        self.ask(|console, hub| {
+        self.ask(|console, _| {
             let entry = |line: &String| {
                 let (name, text) = line.split_once(' ')?;
                 let (name, text) = (name.to_owned(), text.trim().to_owned());
@@ -419,31 +463,27 @@ impl<'a> Session<'a> {
                 &optional(console.command("models"))?,
                 &optional(console.command("help field"))?,
             );
-            let names = |list| {
-                let names = choices.of(list).iter().map(|choice| choice.name.clone());
-                names.collect()
-            };
-            hub.send(&ToPage::Lists {
-                commands,
-                scenes: names(List::Scenes),
-                meshes: names(List::Meshes),
-                fields: names(List::Fields),
-            });
+            listed = commands;
             Ok(())
         })?;
-        self.channels.set_choices(choices);
+        self.send_lists(listed, choices);
         Ok(())
     }
-}
 
-/// Synchronises with the board.
-fn synchronise(console: &mut Console<Watched>, _: &Hub) -> Result<(), TransferError> {
-    if console.board().memory().is_some() {
-        console.synchronise_within(FIRST_PATIENCE_MS)?;
-    } else {
-        console.synchronise()?;
+    /// Sends the lists of commands and choices to the pages.
+    fn send_lists(&self, commands: Vec<Entry>, choices: Choices) {
+        let names = |list| {
+            let names = choices.of(list).iter().map(|choice| choice.name.clone());
+            names.collect()
+        };
+        self.hub.send(&ToPage::Lists {
+            commands,
+            scenes: names(List::Scenes),
+            meshes: names(List::Meshes),
+            fields: names(List::Fields),
+        });
+        self.channels.set_choices(choices);
     }
-    Ok(())
 }
 
 /// The lines of a reply; empty if the firmware refuses the command.

@@ -1,7 +1,7 @@
 //! One open page, and the processing of its messages.
 
 use crate::beside::Beside;
-use crate::channels::{Channels, Request, Upload};
+use crate::channels::{Channels, Program, Request, Upload};
 use crate::hub::{Hub, Id};
 use crate::message::{FileHead, FromPage, ToPage};
 use crate::orbit::Drag;
@@ -10,6 +10,7 @@ use glint_core::console::{LINE_MAX, complete};
 use glint_mesh::convert::{Options, TextureOptions};
 use glint_mesh::model::{self, board_name};
 use glint_mesh::texture::{self, CUTOFF};
+use glint_program_image as image;
 
 /// Maximum total size in bytes of the files of an upload.
 const MAX_UPLOAD: usize = 64 << 20;
@@ -24,9 +25,9 @@ const MAX_NAME: usize = 100;
 /// The reason to close a page's connection.
 pub type Reason = &'static str;
 
-/// A mesh file with its auxiliary files, or a texture file, which the page is sending.
+/// A mesh file with its auxiliary files, a texture file or a program, which the page is sending.
 struct Sent {
-    /// The files; the first one is the mesh or the texture.
+    /// The files; the first one is the mesh, the texture or the program.
     files: Vec<FileHead>,
     /// Size of all files.
     bytes: usize,
@@ -47,11 +48,26 @@ impl Sent {
         is_accepted.then_some(Self { files, bytes, data })
     }
 
-    /// Converts the mesh or texture of a complete upload.
+    /// Converts the mesh, the texture or the program of a complete upload to a request.
     ///
     /// # Errors
     /// A file violates its format, or a buffer is missing. The error is one line for the user.
-    fn converted(self) -> Result<Upload, String> {
+    fn converted(self) -> Result<Request, String> {
+        match &self.files[..] {
+            [FileHead { name, .. }] if image::may_be_program(&self.data) => {
+                let image = image::of_file(&self.data);
+                let image = image.map_err(|found| {
+                    format!("{name}: expected a program for Glint's boards, found {found}")
+                })?;
+                let name = name.clone();
+                Ok(Request::Start(Program { name, image }))
+            }
+            _ => self.converted_model().map(Request::Upload),
+        }
+    }
+
+    /// Converts a mesh or a texture.
+    fn converted_model(self) -> Result<Upload, String> {
         let mut rest = self.data;
         let mut files = self.files.into_iter().map(|file| {
             let after = rest.split_off(file.bytes);
@@ -228,7 +244,7 @@ impl Viewer {
             && let Some(file) = self.upload.take()
         {
             match file.converted() {
-                Ok(upload) => channels.request(self.id, Request::Upload(upload)),
+                Ok(request) => channels.request(self.id, request),
                 Err(error) => channels.hub.notify_one(self.id, error),
             }
         }

@@ -11,6 +11,8 @@ import { startOrbit } from "./orbit.js";
 const element = (id) => document.getElementById(id);
 let holder = "nobody";
 let sendData;
+// What the page's address names, until the page has shown it.
+let address = new URLSearchParams(location.hash.slice(1));
 
 // Messages that make the last notice obsolete.
 const CLEARING = ["command", "choose", "picture", "upload"];
@@ -30,7 +32,7 @@ function notify(text, isError = true) {
 
 const console_ = startConsole(send);
 const panel = startPanel(send);
-const showProgress = startUpload(send, (bytes) => sendData(bytes), notify);
+const { show: showProgress, fetchFile } = startUpload(send, (bytes) => sendData(bytes), notify);
 const showSample = startCurves();
 const motion = startMotion(send, notify);
 startOrbit(send);
@@ -47,6 +49,7 @@ function setHolder(found) {
   element("control").textContent = isMine ? "Release control" : "Take control";
   element("control").disabled = holder === "other";
   for (const control of document.querySelectorAll("main :is(input, button)")) control.disabled = !isMine;
+  followAddress();
 }
 
 element("control").addEventListener("click", () => send({ type: holder === "you" ? "release" : "take" }));
@@ -61,19 +64,49 @@ function showBoard({ name, has_pins, is_shared }) {
 
 const LISTS = ["scenes", "meshes", "fields"];
 
-function showLists({ commands, ...lists }) {
+let lists;
+
+function showLists({ commands, ...shown }) {
   console_.setCommands(commands);
-  for (const list of LISTS) element(list).replaceChildren(...lists[list].map((name) => choice(list, name)));
+  lists = shown;
+  for (const list of LISTS) {
+    element(list).replaceChildren(...lists[list].map((name) => choice(name, () => send({ type: "choose", list, name }))));
+    for (const part of [element(list), element(`${list}-title`)]) part.hidden = lists[list].length === 0;
+  }
+  followAddress();
 }
 
-// A button that shows a scene, a mesh or a field.
-function choice(list, name) {
+// A button that shows a scene, a mesh or a field, or starts a program.
+function choice(name, choose) {
   const button = document.createElement("button");
   button.type = "button";
   button.textContent = name;
   button.disabled = holder !== "you";
-  button.addEventListener("click", () => send({ type: "choose", list, name }));
+  button.addEventListener("click", choose);
   return button;
+}
+
+// Offers the programs beside the page, if it has any.
+async function showPrograms() {
+  const response = await fetch("programs.json").catch(() => undefined);
+  const programs = response?.ok ? await response.json() : [];
+  for (const part of [element("programs"), element("programs-title")]) part.hidden = programs.length === 0;
+  element("programs").replaceChildren(...programs.map(({ name, file }) => choice(name, () => fetchFile(file))));
+}
+
+// Shows what the page's address names, once: `#scene=NAME`, `#mesh=NAME`, `#field=NAME` or `#program=FILE`, a file beside the page.
+function followAddress() {
+  if (holder !== "you" || lists === undefined) return;
+  for (const list of LISTS) {
+    const name = address.get({ scenes: "scene", meshes: "mesh", fields: "field" }[list]);
+    if (name === null) continue;
+    if (lists[list].includes(name)) send({ type: "choose", list, name });
+    else notify(`#${location.hash.slice(1)}: expected one of ${lists[list].join(", ")}`);
+  }
+  const program = address.get("program");
+  if (program !== null && /^[\w-]+(\.[\w-]+)*$/.test(program)) fetchFile(program);
+  else if (program !== null) notify(`#program=${program}: expected the name of a file beside the page`);
+  address = new URLSearchParams();
 }
 
 // Shows why the soft core drew the picture or computed the triangles for the engine, and why most
@@ -103,6 +136,10 @@ const HANDLERS = {
   notice: ({ text, is_error }) => notify(text, is_error),
 };
 
+element("full").addEventListener("click", () => element("monitor").requestFullscreen().catch(({ message }) => notify(message)));
+element("full").hidden = !document.fullscreenEnabled;
+
+showPrograms();
 setHolder("nobody");
 sendData = startLink({
   opened() {

@@ -77,6 +77,24 @@ export function startPanel(send) {
   });
   element("buttons").append(...buttons);
 
+  // A gamepad presses the buttons by its directions: up, down, left, right.
+  const DIRECTIONS = [12, 13, 14, 15];
+  const TILT = 0.5;
+  let byGamepad = 0;
+  let isReading = false;
+  function readGamepads() {
+    const pads = navigator.getGamepads().filter(Boolean);
+    const isDown = (number) => pads.some(({ buttons, axes: [x = 0, y = 0] }) =>
+      buttons[DIRECTIONS[number]]?.pressed || [-y, y, -x, x][number] > TILT);
+    const now = BUTTONS.reduce((all, _, number) => all | (isDown(number) << number), 0);
+    const changed = now ^ byGamepad;
+    byGamepad = now;
+    for (const number of BUTTONS.keys()) if ((changed >> number) & 1) press(number, Boolean((now >> number) & 1));
+    isReading = pads.length > 0;
+    if (isReading) requestAnimationFrame(readGamepads);
+  }
+  addEventListener("gamepadconnected", () => isReading || readGamepads());
+
   function show(pins) {
     leds.forEach((led, bit) => led.classList.toggle("lit", Boolean((pins.leds >> bit) & 1)));
     const lit = leds.flatMap((_, bit) => ((pins.leds >> bit) & 1 ? [bit] : []));

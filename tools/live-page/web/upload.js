@@ -1,4 +1,4 @@
-// Uploads a model or a single texture that the user drops on the page or chooses, as files or as a folder.
+// Uploads a model, a single texture or a program that the user drops on the page or chooses, as files or as a folder.
 const CHUNK = 64 << 10;
 const MAX_BYTES = 64 << 20;
 // Maximum number of auxiliary files and maximum length of a name that the receiver accepts.
@@ -11,8 +11,10 @@ const MAX_ENTRIES = 20000;
 const PICTURES = [".png", ".jpg", ".jpeg"];
 const BESIDE = [".mtl", ".bin", ...PICTURES];
 const TEXTURES = [".glt", ...PICTURES];
+// A program of cargo has no extension.
+const PROGRAMS = [".elf", ".bin", ""];
 
-const extension = (path) => path.slice(path.lastIndexOf(".")).toLowerCase();
+const extension = (path) => /[^/]*$/.exec(path)[0].match(/\.[^.]*$/)?.[0].toLowerCase() ?? "";
 const depth = (path) => path.split("/").length;
 const order = (a, b) => depth(a.path) - depth(b.path) || (a.path < b.path ? -1 : a.path > b.path ? 1 : 0);
 
@@ -48,23 +50,23 @@ function withoutCommonFolders(files) {
 export function startUpload(send, sendBytes, notify) {
   const bar = document.getElementById("progress");
   const inputs = { files: document.getElementById("file"), folder: document.getElementById("folder") };
-  const MESHES = inputs.files.accept.split(",").filter((name) => ![...BESIDE, ...TEXTURES].includes(name));
+  const MESHES = inputs.files.accept.split(",").filter((name) => ![...BESIDE, ...TEXTURES, ...PROGRAMS].includes(name));
 
-  // The mesh nearest to the top folder, and its auxiliary files; or the only file, a texture.
+  // The mesh nearest to the top folder, and its auxiliary files; or the only file, a texture or a program.
   function modelOf(found) {
     const sorted = found.sort(order);
     const nearest = (extensions) => sorted.find(({ path }) => extensions.includes(extension(path)));
     const mesh = nearest(MESHES);
-    const main = mesh ?? (sorted.length === 1 ? nearest(TEXTURES) : undefined);
+    const main = mesh ?? (sorted.length === 1 ? nearest([...TEXTURES, ...PROGRAMS]) : undefined);
     if (!main) {
       const names = sorted.slice(0, 3).map(({ path }) => path).join(", ");
-      throw new Error(`expected a model (${MESHES.join(", ")}) and the files that it names, or a single texture (${TEXTURES.join(", ")}), found ${names || "no file"}`);
+      throw new Error(`expected a model (${MESHES.join(", ")}) and the files that it names, a single texture (${TEXTURES.join(", ")}) or a single program (.elf, .bin), found ${names || "no file"}`);
     }
     const beside = mesh ? sorted.filter(({ path }) => BESIDE.includes(extension(path))) : [];
     const files = withoutCommonFolders([main, ...beside]);
     const size = files.reduce((sum, { file }) => sum + file.size, 0);
     const instead = "drop only the model and the files that it names";
-    if (main.file.size === 0) throw new Error(`${main.path}: expected a model or a texture, found an empty file`);
+    if (main.file.size === 0) throw new Error(`${main.path}: expected a model, a texture or a program, found an empty file`);
     if (files.length > MAX_BESIDE + 1) throw new Error(`expected at most ${MAX_BESIDE} materials, buffers and pictures, found ${files.length - 1}: ${instead}`);
     if (size > MAX_BYTES) throw new Error(`${main.path}: expected files of at most 64 MiB together, found ${size} bytes: ${instead}`);
     return files;
@@ -116,5 +118,11 @@ export function startUpload(send, sendBytes, notify) {
       input.value = "";
     });
   }
-  return show;
+  // Uploads a file of the page's own folder.
+  const fetchFile = async (name) => {
+    const response = await fetch(name);
+    if (!response.ok) return notify(`${name}: expected a file beside the page, found status ${response.status}`);
+    await upload([new File([await response.blob()], name)]);
+  };
+  return { show, fetchFile };
 }

@@ -12,6 +12,9 @@ use object::{Endianness, Object, ObjectSymbol};
 /// First bytes of an ELF file.
 pub const MAGIC: [u8; 4] = *b"\x7fELF";
 
+/// Number of bytes at the start of a file that decide whether it is a text.
+const START: usize = 256;
+
 /// Symbol of the build id in a program.
 const BUILD_ID_SYMBOL: &str = "GLINT_BUILD_ID";
 
@@ -62,6 +65,40 @@ pub enum ImageError {
     /// Two segments overlap.
     #[error("a segment at {0:#010x} that overlaps the previous segment")]
     Overlap(u64),
+}
+
+/// Length of an instruction in bytes.
+const INSTRUCTION: usize = 4;
+
+/// Values of the lowest seven bits of an RV32IM instruction.
+const OPCODES: [u8; 11] = [
+    0x03, 0x0f, 0x13, 0x17, 0x23, 0x33, 0x37, 0x63, 0x67, 0x6f, 0x73,
+];
+
+/// Whether a file begins as a flat binary does: with an RV32IM instruction that is not text.
+#[must_use]
+pub fn is_flat(file: &[u8]) -> bool {
+    file.first_chunk::<INSTRUCTION>()
+        .is_some_and(|first| OPCODES.contains(&(first[0] & 0x7f)))
+}
+
+/// Whether a file can be a program: an ELF file, or one that begins as a flat binary does.
+#[must_use]
+pub fn may_be_program(file: &[u8]) -> bool {
+    let is_text = file.iter().take(START).all(|byte| byte.is_ascii());
+    file.starts_with(&MAGIC) || is_flat(file) && !is_text
+}
+
+/// Returns the memory image of a program, an ELF file or a flat binary, for the boards with 128 MB of main memory.
+///
+/// # Errors
+/// [`ImageError`] for an ELF file.
+pub fn of_file(file: &[u8]) -> Result<Vec<u8>, ImageError> {
+    if file.starts_with(&MAGIC) {
+        of_elf(file, MAIN_RAM.size.into())
+    } else {
+        Ok(file.to_owned())
+    }
 }
 
 /// Returns the memory image of an ELF file, from the base of main memory, for a board with `main_ram` bytes of main memory.

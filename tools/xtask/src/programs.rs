@@ -1,7 +1,9 @@
 //! `cargo xtask programs`: builds the example programs for the soft core.
+//!
+//! The files of a program are `target/firmware/programs/NAME.elf` and its memory image, `NAME.bin`.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result};
@@ -11,7 +13,7 @@ use litex_pac::memories::MAIN_RAM;
 use crate::firmware::{TARGET, write};
 use crate::{paths, run};
 
-/// Builds every program of `firmware/examples`. The ELF files are `target/firmware/programs/NAME.elf`.
+/// Builds every program of `firmware/examples`.
 ///
 /// # Errors
 /// A program does not compile, or is no program for the virtual board.
@@ -23,7 +25,7 @@ pub fn build() -> Result<()> {
     cargo.arg("--target-dir").arg(&built);
     cargo.current_dir(paths::root());
     run::step("build the example programs", &mut cargo)?;
-    let folder = paths::target().join("firmware/programs");
+    let folder = folder();
     fs::create_dir_all(&folder).with_context(|| format!("creating {}", folder.display()))?;
     for name in names()? {
         let elf = built.join(TARGET).join("firmware/examples").join(&name);
@@ -31,6 +33,7 @@ pub fn build() -> Result<()> {
         let image = image::of_elf(&elf, MAIN_RAM.size.into()).with_context(|| name.clone())?;
         let path = folder.join(&name).with_extension("elf");
         write(&path, &elf)?;
+        write(&path.with_extension("bin"), &image)?;
         let path = Path::new("target/firmware/programs").join(&name);
         let (path, length) = (path.with_extension("elf"), image.len());
         run::print_progress(&format!("  {}: {length} bytes in memory", path.display()));
@@ -38,8 +41,16 @@ pub fn build() -> Result<()> {
     Ok(())
 }
 
+/// The folder of the built programs.
+pub fn folder() -> PathBuf {
+    paths::target().join("firmware/programs")
+}
+
 /// The names of the programs, in order.
-fn names() -> Result<Vec<String>> {
+///
+/// # Errors
+/// The folder of the sources cannot be read.
+pub fn names() -> Result<Vec<String>> {
     let folder = paths::root().join("firmware/examples");
     let files = fs::read_dir(&folder).with_context(|| format!("reading {}", folder.display()))?;
     let mut names = Vec::new();

@@ -10,7 +10,7 @@ use rustix::thread::CpuSet;
 
 use crate::gateware::{self, Board, Library};
 use crate::rust_tests::{self, Programs};
-use crate::{bootstrap, cores, firmware, modules, programs, resources, run, scenes, walk, web};
+use crate::{bootstrap, cores, firmware, modules, resources, run, scenes, walk, web};
 
 /// Sets up, builds and tests everything. A failed check does not stop the other checks; a failed build stops the command.
 ///
@@ -54,7 +54,6 @@ pub fn test() -> Result<()> {
         });
         cores::keep_to(&cargo_cores);
         firmware::build(Board::Virtual, &[])?;
-        programs::build()?;
         web::build(None)?;
         results.add(scenes::generate(true));
         results.add(modules::check());

@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result, bail};
+use serde_json::{Value, json};
 
 use crate::bootstrap::{self, WEB_TARGET};
 use crate::gateware::Board;
-use crate::{firmware, paths, run};
+use crate::{firmware, paths, programs, run};
 
 /// Cargo profile of the emulated board.
 const PROFILE: &str = "wasm";
@@ -19,6 +20,15 @@ const SOURCES: [&str; 2] = ["tools/live-page/web", "tools/emulated-board-wasm/we
 /// Name of the emulated board's file. A folder with this file is the output of an earlier build.
 const BOARD: &str = "board.wasm";
 
+/// Name of the firmware's file, which the page starts first.
+const FIRMWARE: &str = "firmware.bin";
+
+/// Name of the list of programs that the page offers.
+const PROGRAMS: &str = "programs.json";
+
+/// The example that a visitor of the page would not look for.
+const FAULTS: &str = "faults";
+
 /// Builds the folder `out`, by default `target/web`, and replaces an earlier build there.
 ///
 /// # Errors
@@ -26,6 +36,7 @@ const BOARD: &str = "board.wasm";
 pub fn build(out: Option<&Path>) -> Result<()> {
     bootstrap::rust_targets()?;
     firmware::build(Board::Virtual, &[])?;
+    programs::build()?;
     run::step(
         "build emulated-board-wasm",
         Command::new("cargo")
@@ -46,11 +57,12 @@ pub fn build(out: Option<&Path>) -> Result<()> {
         .join("emulated_board_wasm.wasm");
     let mut files = vec![
         (built, BOARD.to_owned()),
-        (target.join("firmware/glint.bin"), "firmware.bin".to_owned()),
+        (target.join("firmware/glint.bin"), FIRMWARE.to_owned()),
     ];
     for folder in SOURCES {
         files.extend(files_of(&paths::root().join(folder))?);
     }
+    files.extend(files_of_programs()?);
     let default = target.join("web");
     let out = out.unwrap_or(&default);
     let bytes = replace(out, &files).with_context(|| out.display().to_string())?;
@@ -61,6 +73,27 @@ pub fn build(out: Option<&Path>) -> Result<()> {
          A browser does not run the board from a file: address."
     ));
     Ok(())
+}
+
+/// The programs that the page offers, and their list.
+fn files_of_programs() -> Result<Vec<(PathBuf, String)>> {
+    let names = programs::names()?;
+    let shown: Vec<_> = names.iter().filter(|name| *name != FAULTS).collect();
+    let entries = shown
+        .iter()
+        .map(|name| json!({"name": name, "file": format!("{name}.bin")}));
+    let firmware = json!({"name": "firmware", "file": FIRMWARE});
+    let list: Value = [firmware].into_iter().chain(entries).collect();
+    let path = programs::folder().join(PROGRAMS);
+    firmware::write(&path, list.to_string().as_bytes())?;
+    let images = shown.iter().map(|name| {
+        let file = format!("{name}.bin");
+        (programs::folder().join(&file), file)
+    });
+    Ok([(path, PROGRAMS.to_owned())]
+        .into_iter()
+        .chain(images)
+        .collect())
 }
 
 /// The files of a folder, with their names.

@@ -54,6 +54,9 @@ pub struct BoardArguments {
     /// switches, LEDs and digits; port 0 selects a free port. The printed address opens the page [default: 127.0.0.1:0].
     #[arg(long, value_name = "ADDR", num_args = 0..=1, default_missing_value = "127.0.0.1:0", conflicts_with_all = ["pty", "bios", "flash"])]
     web: Option<SocketAddr>,
+    /// With --web, start the firmware again whenever its file changes, such as after `cargo build`.
+    #[arg(long, requires = "web", requires = "firmware")]
+    watch: bool,
     /// Board: `emulated`, or `virtual` (the verilated SoC), which is slow; with --web also a serial port.
     #[arg(long, default_value = "emulated")]
     board: BoardName,
@@ -104,7 +107,8 @@ impl BoardArguments {
             note("on other devices, replace the host in this address by this machine's address");
         }
         let _ready = ready.map(|ready| ready.write(&url)).transpose()?;
-        Ok(server.run(&mut *board, &self.board.to_string(), &stop)?)
+        let watched = self.line.firmware.clone().filter(|_| self.watch);
+        Ok(server.run(&mut *board, &self.board.to_string(), watched, &stop)?)
     }
 
     /// Whether the board starts with the BIOS.

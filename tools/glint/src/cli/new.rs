@@ -33,7 +33,7 @@ impl NewArguments {
             "{path}: made; `cd {path}`, then `cargo run` shows it in the browser"
         ))?;
         if !project::has_target(TARGET) {
-            note(&format!(
+            note(format!(
                 "first install the compiler's target of the soft core: `rustup target add {TARGET}`"
             ));
         }

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`server`] | listens, checks the requests, serves the files of the page |
 //! | [`connection`] | the connection to one open page |
+//! | `watch` | starts a program again whenever its file changes |
 //! | `serial` | the page of a board on a serial port |
 //!
 //! `glint_live_page` contains the page, its messages and the session with the board. docs/live-page.md describes the page and the
@@ -12,5 +13,6 @@
 pub mod connection;
 mod serial;
 pub mod server;
+mod watch;
 
 pub use server::Server;

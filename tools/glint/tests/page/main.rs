@@ -7,6 +7,7 @@ mod busy;
 mod buttons;
 mod controls;
 mod page;
+mod programs;
 mod rates;
 mod refusals;
 mod serial;

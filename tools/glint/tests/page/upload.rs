@@ -83,7 +83,7 @@ fn square() -> Files {
 }
 
 /// Drops files on the page, without their folders.
-fn drop_files(browser: &mut Browser, page: &Page, files: &[(&str, Vec<u8>)]) {
+pub fn drop_files(browser: &mut Browser, page: &Page, files: &[(&str, Vec<u8>)]) {
     let items: String = files
         .iter()
         .map(|(path, bytes)| {
@@ -265,7 +265,7 @@ fn a_dropped_model_has_its_textures() {
         (
             &gltf[1..],
             "expected a model (.obj, .stl, .ply, .gltf, .glb, .glm) and the files that it names, \
-             or a single texture (.glt, .png, .jpg, .jpeg), found square a.bin, squares.png"
+             a single texture (.glt, .png, .jpg, .jpeg) or a single program (.elf, .bin), found square a.bin, squares.png"
                 .into(),
         ),
     ] {

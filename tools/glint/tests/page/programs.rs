@@ -1,0 +1,123 @@
+//! Programs on the page: by a button, by the page's address, and by a dropped file.
+
+use crate::alone::Files;
+use crate::browser::{Browser, Page};
+use crate::served::Served;
+use crate::upload::drop_files;
+use glint_board_api::built;
+
+const LOG: &str = "document.getElementById('log').textContent";
+const NOTICE: &str = "document.getElementById('notice').textContent";
+
+/// The ELF file of an example.
+fn elf(name: &str) -> Vec<u8> {
+    let file = format!("firmware/programs/{name}.elf");
+    std::fs::read(built::find(&file, "cargo xtask programs").unwrap()).unwrap()
+}
+
+/// Waits until the monitor shows a picture with this many pixels in a line that are not black.
+fn wait_for_light(browser: &mut Browser, page: &Page, count: u32) {
+    let lit = "(() => { const canvas = document.getElementById('monitor'); \
+        const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height); \
+        let lit = 0; for (let i = 0; i < data.length; i += 4) lit += data[i + 1] > 100; return lit; })()";
+    browser.wait(page, &format!("{lit} > {count}"));
+}
+
+#[test]
+fn a_page_without_a_program_plays_the_examples_and_returns_to_the_firmware() {
+    let files = Files::start();
+    let mut browser = Browser::start();
+    let page = browser.open(&format!("{}#program=fighter.bin", files.url));
+    browser.wait(&page, &format!("{NOTICE}.startsWith('fighter.bin runs, ')"));
+    browser.wait(
+        &page,
+        &format!("{LOG}.includes('fighter: fly through the gates')"),
+    );
+    wait_for_light(&mut browser, &page, 500);
+    browser.wait(&page, "document.getElementById('scenes').hidden");
+
+    let press = |name: &str| {
+        format!(
+            "[...document.querySelectorAll('#programs button')].find(({{ textContent }}) => textContent === '{name}').click()"
+        )
+    };
+    browser.evaluate(&page, &press("kernel"));
+    browser.wait(&page, &format!("{LOG}.includes('newton: ')"));
+    browser.evaluate(&page, &press("firmware"));
+    browser.wait(
+        &page,
+        "document.querySelectorAll('#scenes button').length > 10",
+    );
+    browser.wait(&page, "!document.getElementById('scenes').hidden");
+
+    // An address with a scene shows it, and names the choices if there is no such scene.
+    let page = browser.open(&format!("{}#scene=wireframe", files.url));
+    browser.wait(&page, &format!("{LOG}.includes('scene wireframe')"));
+    let page = browser.open(&format!("{}#scene=nowhere", files.url));
+    browser.wait(
+        &page,
+        &format!("{NOTICE}.startsWith('#scene=nowhere: expected one of ')"),
+    );
+    let page = browser.open(&format!("{}#program=nothing.bin", files.url));
+    browser.wait(
+        &page,
+        &format!("{NOTICE}.startsWith('nothing.bin: expected a file beside the page')"),
+    );
+}
+
+#[test]
+fn a_watched_program_starts_again_when_its_file_changes() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("hello.elf");
+    std::fs::write(&path, elf("kernel")).unwrap();
+    let file = path.to_str().unwrap();
+    let served = Served::start_with("watch", &["--web", "--watch", "--firmware", file]);
+    let mut browser = Browser::start();
+    let page = browser.open(&served.url);
+    browser.wait(&page, &format!("{LOG}.includes('newton: ')"));
+    std::fs::write(&path, b"no program\n").unwrap();
+    browser.wait(
+        &page,
+        &format!("{NOTICE}.includes('expected a flat binary')"),
+    );
+    std::fs::write(&path, elf("fighter")).unwrap();
+    browser.wait(&page, &format!("{NOTICE}.startsWith('hello.elf runs, ')"));
+    browser.wait(&page, &format!("{LOG}.includes('fly through the gates')"));
+}
+
+#[test]
+fn a_dropped_program_replaces_the_running_one_and_its_faults_are_shown() {
+    let served = Served::start("programs");
+    let mut browser = Browser::start();
+    let page = browser.open(&served.url);
+    browser.wait(
+        &page,
+        "document.querySelectorAll('#scenes button').length > 10",
+    );
+    drop_files(&mut browser, &page, &[("faults", elf("faults"))]);
+    browser.wait(&page, &format!("{NOTICE}.startsWith('faults runs, ')"));
+    browser.evaluate(
+        &page,
+        "document.querySelector('[aria-label=\"switch 0\"]').click()",
+    );
+    browser.wait(&page, &format!("{LOG}.includes('a fault on purpose')"));
+    browser.wait(&page, &format!("{LOG}.includes('press Enter to restart')"));
+    browser.evaluate(
+        &page,
+        "document.querySelector('[aria-label=\"switch 0\"]').click()",
+    );
+
+    // A program for other boards is refused, and the next one runs.
+    let mut other = elf("cube");
+    let name = b"_windows_end\0";
+    let at = other.windows(name.len()).position(|part| part == name);
+    other[at.unwrap()] = b'x';
+    drop_files(&mut browser, &page, &[("other.elf", other)]);
+    browser.wait(
+        &page,
+        &format!("{NOTICE}.includes('without the symbol _windows_end')"),
+    );
+    drop_files(&mut browser, &page, &[("cube.elf", elf("cube"))]);
+    browser.wait(&page, &format!("{NOTICE}.startsWith('cube.elf runs, ')"));
+    wait_for_light(&mut browser, &page, 1_000);
+}
