@@ -4,9 +4,9 @@ use glint_core::feature::TEXTURE;
 use glint_hal::timer::Clock;
 use glint_program::gesture::Gesture;
 use glint_program::hardware::{Devices, Identity};
-use glint_program::interrupts::{ConsoleUart, UART};
 use glint_program::renderer::Renderer;
 use glint_program::sensor::Imu;
+use glint_program::serial::{ConsoleUart, UART};
 use glint_scene::{Animator, Scene};
 use litex_pac::ctrl::Ctrl;
 

@@ -7,7 +7,7 @@ use embedded_io::Write as _;
 use glint_core::console::{Event, LINE_MAX, LineEditor, PROMPT};
 use glint_core::tasks::Turn;
 use glint_hal::timer::Clock;
-use glint_program::interrupts::{ConsoleUart, ConsoleWriter};
+use glint_program::serial::{ConsoleUart, ConsoleWriter};
 use heapless::String;
 
 use crate::names::MachineNames;

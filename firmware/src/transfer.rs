@@ -11,7 +11,7 @@ use glint_core::wire::{
     CRC_32, Digest, Endpoint, Failure, MAX_FRAME, Manifest, Receiving, Role, Sending, State, Timing,
 };
 use glint_hal::timer::Clock;
-use glint_program::interrupts::ConsoleUart;
+use glint_program::serial::ConsoleUart;
 use glint_scene::Name;
 
 use crate::arena::Loan;

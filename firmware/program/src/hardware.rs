@@ -21,9 +21,10 @@ use litex_pac::{BUILD_ID, Peripherals};
 
 use crate::gateware::{GatewareRenderer, RightEye};
 use crate::gesture::Gesture;
-use crate::interrupts::{self, Present, UART};
+use crate::interrupts::{self, Present};
 use crate::memory::{self, Memory};
 use crate::renderer::Renderer;
+use crate::serial::UART;
 
 /// Build id of the gateware that the program was built for. Tools find this value by the name of the symbol.
 #[unsafe(no_mangle)]

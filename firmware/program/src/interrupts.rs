@@ -3,28 +3,13 @@
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use glint_core::feature::{GESTURE, IMU};
-use glint_hal::uart::{Uart, Writer};
 use glint_hal::{gesture as engine, i2c, interrupt, raymarch, scanout, timer, triangle};
 use litex_pac::{Interrupt, cpu};
 
 use crate::gesture;
 use crate::sensor;
+use crate::serial::UART;
 use crate::supervision;
-
-/// Capacity of the receive queue in bytes: enough for more than a second of input at 115,200 baud, and for several windows
-/// of an upload.
-const RECEIVE_QUEUE: usize = 16 << 10;
-/// Capacity of the send queue in bytes.
-const SEND_QUEUE: usize = 4 << 10;
-
-/// The UART of the SoC.
-pub type ConsoleUart = Uart<RECEIVE_QUEUE, SEND_QUEUE>;
-
-/// A writer to the UART.
-pub type ConsoleWriter = Writer<'static, RECEIVE_QUEUE, SEND_QUEUE>;
-
-/// The UART, shared by its interrupt and the program.
-pub static UART: ConsoleUart = ConsoleUart::new();
 
 /// Parts of the SoC that this build supports.
 pub struct Present {

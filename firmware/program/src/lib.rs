@@ -93,6 +93,8 @@ pub mod renderer;
 #[allow(unsafe_code)] // Polls a pinned future from interrupts.
 pub mod sensor;
 #[cfg(target_arch = "riscv32")]
+pub mod serial;
+#[cfg(target_arch = "riscv32")]
 #[allow(unsafe_code)] // Names the linker's symbol of the stack.
 mod supervision;
 

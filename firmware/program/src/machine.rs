@@ -14,12 +14,13 @@ use crate::board::{Board, Levels, Motion, digits};
 use crate::canvas::{Canvas, Pixels};
 use crate::drawn::{Drawn, RenderedBy};
 use crate::hardware::{Devices, Hardware};
-use crate::interrupts::{self, UART};
+use crate::interrupts;
 use crate::panic;
 use crate::picture::{Picture, PictureError};
 use crate::program::Program;
 use crate::renderer::Renderer;
 use crate::sensor::{self, Imu, Inbox};
+use crate::serial::UART;
 use crate::shapes::Shapes;
 use crate::supervision;
 

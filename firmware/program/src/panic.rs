@@ -8,7 +8,7 @@ use litex_pac::Peripherals;
 use riscv::register::{mcause, mepc, mtval};
 use riscv_rt::TrapFrame;
 
-use crate::interrupts::UART;
+use crate::serial::UART;
 
 /// The handler of all exceptions of the CPU. No exception is expected.
 #[unsafe(export_name = "ExceptionHandler")]
