@@ -6,6 +6,7 @@ use core::time::Duration;
 use glint_core::camera::{View, ViewError};
 use glint_core::digits::Display;
 use glint_core::fixed::{Q32_32, Turns};
+use glint_core::gesture::Pose;
 use glint_core::mesh::Mesh;
 use glint_core::orientation::{Quaternion, Sample};
 use glint_core::picture::Size;
@@ -56,6 +57,16 @@ impl Motion {
     }
 }
 
+/// A hand in front of the image sensor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Hand {
+    /// The place on a sphere about the origin to which the hand has moved the camera: left and right are the azimuth, up and down the angle
+    /// from the z axis, nearer and farther the distance.
+    pub pose: Pose,
+    /// Whether a hand is seen; otherwise the pose is that of the last hand.
+    pub is_seen: bool,
+}
+
 /// The board: its input since the last picture, and its output.
 ///
 /// ```
@@ -73,6 +84,8 @@ impl Motion {
 pub struct Board {
     /// Levels of the sixteen LEDs; bit 0 is LED 0.
     pub leds: u16,
+    /// Whether the image sensor is on, and looks for a [hand](Self::hand).
+    pub watches_hand: bool,
     /// The lit segments of the eight digits. `None` shows the pictures per second.
     pub digits: Option<[u8; 8]>,
     defaults: Defaults,
@@ -85,6 +98,7 @@ pub struct Board {
     pressed: u8,
     switches: u16,
     motion: Option<Motion>,
+    hand: Option<Hand>,
     samples: Vec<Sample, SAMPLES>,
     received: Vec<u8, RECEIVED>,
     log: String<LOG>,
@@ -105,6 +119,7 @@ impl Board {
     pub(crate) fn new(defaults: Defaults, shapes: Shapes) -> Self {
         Self {
             leds: 0,
+            watches_hand: false,
             digits: None,
             defaults,
             shapes,
@@ -116,6 +131,7 @@ impl Board {
             pressed: 0,
             switches: 0,
             motion: None,
+            hand: None,
             samples: Vec::new(),
             received: Vec::new(),
             log: String::new(),
@@ -145,6 +161,11 @@ impl Board {
         }
         // There is room for a sample.
         let _ = self.samples.push(motion.sample);
+    }
+
+    /// Sets the hand; `None` without an image sensor.
+    pub(crate) fn set_hand(&mut self, hand: Option<Hand>) {
+        self.hand = hand;
     }
 
     /// The buffer of received bytes.
@@ -211,6 +232,11 @@ impl Board {
     /// The motion sensor's attitude; `None` before its first sample, or without a sensor.
     pub const fn motion(&self) -> Option<&Motion> {
         self.motion.as_ref()
+    }
+
+    /// The hand; `None` while [`watches_hand`](Self::watches_hand) is false, or without an image sensor.
+    pub const fn hand(&self) -> Option<&Hand> {
+        self.hand.as_ref()
     }
 
     /// Samples of the motion sensor since the previous picture, the oldest first; it sends 1,000 a second.

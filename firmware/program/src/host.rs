@@ -30,7 +30,7 @@ use glint_model::edges::EdgeList;
 use glint_model::{Projected, RenderError};
 use glint_scene::Defaults;
 
-use crate::board::{Board, Button, Levels, Motion};
+use crate::board::{Board, Button, Hand, Levels, Motion};
 use crate::canvas::{Canvas, Pixels};
 use crate::picture::{Picture, PictureError};
 use crate::program::Program;
@@ -123,6 +123,11 @@ impl<P: Program> Host<P> {
     /// Adds a sample of the motion sensor to the next picture.
     pub fn move_sensor(&mut self, motion: Motion) {
         self.board.add_sample(motion);
+    }
+
+    /// Sets the hand in front of the image sensor for the next pictures; `None` without an image sensor.
+    pub fn show_hand(&mut self, hand: Option<Hand>) {
+        self.board.set_hand(hand);
     }
 
     /// Sends bytes over the serial line. Bytes beyond 256 for a picture are dropped.

@@ -40,7 +40,7 @@
 //!
 //! | module | subject |
 //! |---|---|
-//! | [`Board`] | buttons, switches, LEDs, digits, motion sensor, time, serial line |
+//! | [`Board`] | buttons, switches, LEDs, digits, motion sensor, hand, time, serial line |
 //! | [`Picture`] | camera, light, meshes, field, lines, rectangles |
 //! | [`Canvas`] | text and shapes of `embedded-graphics` on the drawn picture |
 //! | [`lines`] | segments in space, drawn by the line engine |
@@ -99,7 +99,7 @@ pub mod serial;
 mod supervision;
 
 pub use aligned::Aligned;
-pub use board::{Board, Button, Motion};
+pub use board::{Board, Button, Hand, Motion};
 pub use canvas::Canvas;
 pub use embedded_graphics as graphics;
 pub use glint_core as core;

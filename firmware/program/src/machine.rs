@@ -6,13 +6,16 @@ use core::time::Duration;
 
 use embedded_io::Write as _;
 use glint_core::digits::Display;
-use glint_core::feature::IMU;
+use glint_core::feature::{GESTURE, IMU};
+use glint_core::gesture::Presence;
+use glint_core::image_sensor::FrameSize;
 use glint_core::mpu6050::Stream;
 use glint_hal::timer::Clock;
 
-use crate::board::{Board, Levels, Motion, digits};
+use crate::board::{Board, Hand, Levels, Motion, digits};
 use crate::canvas::{Canvas, Pixels};
 use crate::drawn::{Drawn, RenderedBy};
+use crate::gesture::Gesture;
 use crate::hardware::{Devices, Hardware};
 use crate::interrupts;
 use crate::panic;
@@ -38,11 +41,12 @@ pub fn run<P: Program>() -> ! {
         identity,
         clock,
         devices,
+        gesture,
         mut renderer,
         spare,
         ..
     } = hardware;
-    let Some(mut devices) = devices else {
+    let Some(devices) = devices else {
         panic::report(format_args!(
             "cannot start: this program was built for gateware {:#010x}, found {:#010x}",
             identity.firmware, identity.gateware
@@ -52,7 +56,13 @@ pub fn run<P: Program>() -> ! {
         Ok(shapes) => shapes,
         Err(_) => panic::report(format_args!("cannot start: the built-in cube")),
     };
-    let bus = devices.i2c.take();
+    let mut inputs = Inputs {
+        devices,
+        gesture,
+        imu: Imu::default(),
+        clock,
+    };
+    let bus = inputs.devices.i2c.take();
     let stream = pin!(async move {
         if let Some(bus) = bus {
             Stream::new(bus, clock, Inbox).run().await;
@@ -64,28 +74,20 @@ pub fn run<P: Program>() -> ! {
     unsafe {
         sensor::start(stream);
     }
-    let mut imu = Imu::default();
     let mut board = Board::new(renderer.defaults(), shapes);
     let mut program = P::start(&mut board);
     let mut notes = Notes::default();
     let mut rate = 0;
     loop {
         supervision::on_picture();
-        read(&mut board, &devices, &mut imu, clock);
+        inputs.read(&mut board);
         program.update(&mut board);
         let log = board.end();
         let mut uart = UART.writer(clock, SEND_TIMEOUT);
         // The text is lost if the serial line accepts no text.
         let _ = uart.write_all(log.as_bytes());
-        show(&board, &mut devices, rate);
-        let drawn = draw(
-            &program,
-            &mut board,
-            &mut renderer,
-            &devices,
-            &mut imu,
-            clock,
-        );
+        show(&board, &mut inputs.devices, rate);
+        let drawn = draw(&program, &mut board, &mut renderer, &mut inputs);
         match drawn {
             Ok(drawn) => {
                 rate = drawn.rate(clock.frequency());
@@ -96,36 +98,72 @@ pub fn run<P: Program>() -> ! {
     }
 }
 
-/// Reads the input for the next picture.
-fn read(board: &mut Board, devices: &Devices, imu: &mut Imu, clock: Clock) {
-    poll(board, devices, imu, clock);
-    let received = board.received_mut();
-    let mut byte = [0];
-    while !received.is_full() && UART.receive(&mut byte) > 0 {
-        // There is room for a byte.
-        let _ = received.push(byte[0]);
-    }
-    board.begin(Levels {
-        time: time(clock),
-        buttons: devices.buttons.read(),
-        switches: devices.switches.read(),
-    });
+/// The sources of a program's input.
+struct Inputs {
+    devices: Devices,
+    gesture: Option<Gesture>,
+    imu: Imu,
+    clock: Clock,
 }
 
-/// Reads what must be read more often than once a picture: the buttons, and the samples of the sensor.
-fn poll(board: &mut Board, devices: &Devices, imu: &mut Imu, clock: Clock) {
-    // Drawing by the soft core, which calls this function, may take long.
-    supervision::on_picture();
-    board.sample_buttons(time(clock), devices.buttons.read());
-    if IMU.is_built {
-        sensor::deliver_each(imu, &mut |imu| {
-            if let Some(sample) = imu.latest() {
-                board.add_sample(Motion {
-                    attitude: imu.attitude(),
-                    sample: *sample,
-                });
-            }
+impl Inputs {
+    /// Reads the input for the next picture.
+    fn read(&mut self, board: &mut Board) {
+        self.switch_image_sensor(board.watches_hand);
+        self.poll(board);
+        let received = board.received_mut();
+        let mut byte = [0];
+        while !received.is_full() && UART.receive(&mut byte) > 0 {
+            // There is room for a byte.
+            let _ = received.push(byte[0]);
+        }
+        board.begin(Levels {
+            time: time(self.clock),
+            buttons: self.devices.buttons.read(),
+            switches: self.devices.switches.read(),
         });
+    }
+
+    /// Turns the image sensor on or off, if the program has changed its wish. A sensor that does not answer is looked for again.
+    fn switch_image_sensor(&mut self, is_on: bool) {
+        let Some(gesture) = self.gesture.as_mut().filter(|_| GESTURE.is_built) else {
+            return;
+        };
+        match (is_on, gesture.sensor()) {
+            (true, None) => {
+                // `hand` is `None` without a sensor.
+                let _ = gesture.start(FrameSize::Qvga);
+            }
+            (false, Some(_)) => gesture.stop(),
+            (true, Some(_)) | (false, None) => {}
+        }
+    }
+
+    /// Reads what must be read more often than once a picture: the buttons, the samples of the motion sensor, and the hand.
+    fn poll(&mut self, board: &mut Board) {
+        // Drawing by the soft core, which calls this function, may take long.
+        supervision::on_picture();
+        board.sample_buttons(time(self.clock), self.devices.buttons.read());
+        if IMU.is_built {
+            sensor::deliver_each(&mut self.imu, &mut |imu| {
+                if let Some(sample) = imu.latest() {
+                    board.add_sample(Motion {
+                        attitude: imu.attitude(),
+                        sample: *sample,
+                    });
+                }
+            });
+        }
+        if GESTURE.is_built
+            && let Some(gesture) = &mut self.gesture
+        {
+            gesture.poll();
+            let has_sensor = matches!(gesture.sensor(), Some(Ok(_)));
+            board.set_hand(has_sensor.then(|| Hand {
+                pose: gesture.pose(),
+                is_seen: gesture.presence() == Presence::Tracked,
+            }));
+        }
     }
 }
 
@@ -145,9 +183,7 @@ fn draw<P: Program>(
     program: &P,
     board: &mut Board,
     renderer: &mut Renderer,
-    devices: &Devices,
-    imu: &mut Imu,
-    clock: Clock,
+    inputs: &mut Inputs,
 ) -> Result<Drawn, Error> {
     let mut picture = Picture::new(board.defaults()).map_err(PictureError::from)?;
     program.draw(&mut picture)?;
@@ -155,12 +191,12 @@ fn draw<P: Program>(
     let drawn = loop {
         let before = interrupts::count();
         let drawn = renderer.draw(&frame, picture.backend, false, || {
-            poll(board, devices, imu, clock);
+            inputs.poll(board);
         });
         match drawn {
             Some(drawn) => break drawn?,
             None => {
-                poll(board, devices, imu, clock);
+                inputs.poll(board);
                 interrupts::sleep(before);
             }
         }

@@ -1,6 +1,7 @@
 //! The example programs, with scripted buttons and switches, on the emulated board; one also on the virtual board.
 
 use glint::board::{self, EmulatedBoard, SimulatedBoard, Simulation};
+use glint::gesture;
 use glint::imu::log::Entry;
 use glint::imu::sensor;
 use glint::program;
@@ -14,6 +15,7 @@ use std::net::TcpStream;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::{env, fs};
+use virtual_board::virtual_image_sensor::{Hand, ImageSensor, Scene};
 use virtual_board::virtual_mpu6050::Wires;
 
 /// Clock cycles in a hundredth of a second.
@@ -123,6 +125,30 @@ fn the_fighter_ends_after_three_crashes_and_starts_again() {
     run_for(&mut board, 1, 10);
     assert!(said(&mut board).contains("fly through the gates"));
     assert_eq!(board.inner().leds(), 7);
+}
+
+/// An image sensor with a hand at this place in its frame.
+fn hand_at(centre: [f64; 2]) -> ImageSensor {
+    let area = 320.0 * 240.0 * 0.06;
+    let mut scene = Scene::new([320, 240], move |_| vec![Hand { centre, area }]);
+    scene.noise = 2.0;
+    gesture::image_sensor(scene)
+}
+
+#[test]
+fn a_hand_turns_the_torus() {
+    let mut board = start("hand");
+    board.inner().plug_image_sensor(hand_at([100.0, 90.0]));
+    run_for(&mut board, 0, 60);
+    assert_eq!(board.inner().leds(), 1);
+    // The hand stands still, so the torus does.
+    let held = run_for(&mut board, 0, 20);
+    let difference = |a: &Frame, b: &Frame| {
+        let pairs = a.pixels.iter().zip(&b.pixels);
+        pairs.filter(|(a, b)| a != b).count()
+    };
+    let later = run_for(&mut board, 0, 20);
+    assert!(difference(&held, &later) < held.pixels.len() / 20);
 }
 
 #[test]
@@ -347,11 +373,12 @@ fn a_new_project_shows_its_program_in_the_page() {
 }
 
 /// The programs of docs/report/programs.md, with the buttons that are held for their pictures.
-const PROGRAMS: [(&str, u8); 6] = [
+const PROGRAMS: [(&str, u8); 7] = [
     ("cube", 0),
     ("solar", 0),
     ("flight", 0),
     ("fighter", 8),
+    ("hand", 0),
     ("kernel", 0),
     ("scope", 0),
 ];
@@ -400,8 +427,10 @@ fn the_pages_of_programs_show_their_pictures_sizes_and_rates() {
     for (name, buttons) in PROGRAMS {
         let image = image(name);
         let mut board = board::emulated(&image).unwrap();
-        if name == "scope" {
-            board.inner().plug(shaken());
+        match name {
+            "scope" => board.inner().plug(shaken()),
+            "hand" => board.inner().plug_image_sensor(hand_at([90.0, 100.0])),
+            _ => {}
         }
         let frame = run_for(&mut board, buttons, 140);
         // Another compiler draws at slightly other times, so the pictures may differ slightly.
