@@ -53,6 +53,24 @@ impl Image {
     }
 }
 
+impl Image {
+    /// The distances along the camera's axis n as greys: white at the nearest surface, dark at the farthest, linear between them, and black
+    /// where there is no surface.
+    #[must_use]
+    pub fn depth_picture(&self, scale: &DepthScale) -> Picture {
+        /// Grey of the farthest surface.
+        const FARTHEST: f64 = 40.0;
+        let distance = |&code: &u32| Some(scale.distance(code)?.to_num::<f64>());
+        let distances: Vec<Option<f64>> = self.depth.iter().map(distance).collect();
+        let seen = || distances.iter().flatten().copied();
+        let nearest = seen().fold(f64::INFINITY, f64::min);
+        let range = (seen().fold(nearest, f64::max) - nearest).max(f64::MIN_POSITIVE);
+        let grey = |z: f64| (255.0 - (255.0 - FARTHEST) * (z - nearest) / range).round() as u8;
+        let colours = distances.iter().flat_map(|z| [z.map_or(0, grey); 3]);
+        Picture::new(self.width as usize, self.height as usize, colours.collect())
+    }
+}
+
 /// An animation that repeats endlessly. Its images have one size, and are written one by one.
 pub enum Animation<W: Write> {
     /// An animated PNG.

@@ -17,8 +17,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub const PICTURE: &[&str] = &["png"];
 /// Extensions of an animation file.
 pub const ANIMATION: &[&str] = &["png", "gif"];
-/// Extensions of a file of distances: little-endian numbers.
-pub const DEPTH: &[&str] = &["f32", "bin", "raw"];
+/// Extensions of a file of distances: little-endian numbers, or a picture.
+pub const DEPTH: &[&str] = &["f32", "bin", "raw", "png"];
 /// Extensions of a statistics file.
 pub const STATISTICS: &[&str] = &["json"];
 /// Extensions of a mesh file.

@@ -35,8 +35,9 @@ pub struct RenderArguments {
     #[arg(long, value_name = "PICTURE.png", help_heading = heading::PICTURE)]
     out: PathBuf,
     /// Write the distances along the camera's forward axis n in world units: one little-endian f32
-    /// for each pixel, +inf for a pixel without a surface. Requires a picture with one sample a pixel.
-    #[arg(long, value_name = "DEPTH.f32", help_heading = heading::PICTURE)]
+    /// for each pixel, +inf for a pixel without a surface; or, with the extension .png, a picture of greys, white at the nearest surface,
+    /// dark at the farthest, and black without a surface. Requires a picture with one sample a pixel.
+    #[arg(long, value_name = "DEPTH.f32|DEPTH.png", help_heading = heading::PICTURE)]
     depth: Option<PathBuf>,
     /// Write clock cycles, the clock frequency in Hz, and counts of triangles, pixels and rays as JSON.
     #[arg(long, value_name = "STATS.json", help_heading = heading::PICTURE)]
@@ -125,7 +126,14 @@ impl RenderArguments {
             let scale = first.map(|frame| frame.constants()).transpose()?;
             let scale = scale.and_then(|constants| constants.depth_scale());
             let scale = scale.context("expected a frame with a subject")?;
-            out.write(|out| image.write_depth(out, &scale))?;
+            let is_picture = out
+                .path()
+                .extension()
+                .is_some_and(|end| end.eq_ignore_ascii_case("png"));
+            out.write(|out| match is_picture {
+                true => image.depth_picture(&scale).write_png(out),
+                false => image.write_depth(out, &scale),
+            })?;
         }
         let totals = Totals {
             stats: &stats,

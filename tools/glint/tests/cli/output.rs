@@ -132,8 +132,8 @@ fn an_extension_says_what_is_written() {
         "
         render cube --out x.jpg
             x.jpg: expected a name that ends in .png, found '.jpg'
-        render cube --out x.png --depth x.png
-            x.png: expected a name that ends in .f32, .bin, .raw, found '.png'
+        render cube --out x.png --depth x.jpg
+            x.jpg: expected a name that ends in .f32, .bin, .raw, .png, found '.jpg'
         render cube --out x.png --stats x.csv
             x.csv: expected a name that ends in .json, found '.csv'
         imu replay log.csv --out x.json
