@@ -1,4 +1,4 @@
-"""Arbiter between the CPU's two buses and the shared bus, which registers one request at a time, and the shared bus's decoder."""
+"""Arbiter between the CPU's two buses and the shared bus, which registers one request at a time, and the selections of the shared bus's slaves."""
 
 from litex.gen import LiteXModule
 from litex.soc.interconnect import wishbone
@@ -64,12 +64,15 @@ class CpuBus(LiteXModule):
         ]
 
 
-class BusDecoder(wishbone.Decoder):
-    """Replaces LiteX's decoder between the bus of the `stage`, a `CpuBus`, and the slaves: the addresses are compared before the stage
-    stores them, and the results are stored with them. The words of a burst have the same slave. LiteX's argument `register`, which
-    would delay the selection of the data, has no effect."""
+class BusSelections(LiteXModule):
+    """Selections of the slaves of the bus of `stage`, a `CpuBus`: the addresses are compared before the stage stores them, and the
+    results are stored with them. The words of a burst have the same slave."""
 
-    def __init__(self, stage, master, slaves, register=False):
-        selected = [Signal() for _ in slaves]
-        self.sync += If(stage.loads, *(own.eq(covers(stage.next_adr)) for own, (covers, _) in zip(selected, slaves, strict=True)))
-        super().__init__(master, [(lambda _, own=own: own, slave) for own, (_, slave) in zip(selected, slaves)])
+    def __init__(self, stage):
+        self._next_adr, self._loads = stage.next_adr, stage.loads
+
+    def stored(self, covers):
+        """Returns the stored result of `covers`, a function that compares an address, as a function for LiteX's decoder."""
+        own = Signal()
+        self.sync += If(self._loads, own.eq(covers(self._next_adr)))
+        return lambda _: own

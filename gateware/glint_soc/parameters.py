@@ -6,7 +6,7 @@ from operator import or_
 
 from litex.gen import LiteXModule
 from litex.soc.interconnect.csr import CSR, CSRStorage
-from migen import READ_FIRST, Case, If, Memory, Signal
+from migen import READ_FIRST, Case, If, Memory, Mux, Signal
 
 from .register_map import CSR_PAGING
 
@@ -24,15 +24,16 @@ class Parameter(CSRStorage):
 
     def __init__(self, *arguments, description, **options):
         super().__init__(*arguments, description=f"{description} Reads as 0.", reset_less=True, **options)
-        # Whether the register is stored in the memory of a `PassParameters` object, which then drives `storage`.
-        self.in_memory = False
+        self.register = CSR(self.size, self.name)
+        # The `PassParameters` whose memory stores the register, and which then drives `storage`.
+        self.memory = None
 
     def do_finalize(self, busword, ordering):
         if self.size > busword:
             raise ValueError(f"{self.name}: {self.size} bits, expected at most {busword}")
-        register = CSR(self.size, self.name)
+        register = self.register
         self.simple_csrs.append(register)
-        if not self.in_memory:
+        if self.memory is None:
             self.sync += [If(register.re, self.storage.eq(register.r)), self.re.eq(register.re)]
 
 
@@ -56,11 +57,12 @@ class PassParameters(LiteXModule):
     registers of pass k to their copies, because a register of several passes has a copy in each of them. `storage` of a register
     is its copy in the first of its passes.
 
-    The registers are words of a block RAM as large as the block's window of the bus. The copies of a pass are a chain with a common
+    The registers are words of a block RAM. In any SoC, their strobes write it, one clock after an access to the register. A SoC may
+    instead call `connect` before this module is finalized. The copies of a pass are a chain with a common
     enable, which is duplicated so that each duplicate drives at most `_LOADS` flip-flops. The widest copy is next to the memory, so
     the chain needs no flip-flops other than the bits of the copies.
 
-        bus ─▶ words ─▶ widest copy ─▶ … ─▶ narrowest copy
+        registers ─▶ words ─▶ widest copy ─▶ … ─▶ narrowest copy
     """
 
     def __init__(self, *passes):
@@ -69,9 +71,9 @@ class PassParameters(LiteXModule):
         self.copies = []
         for chain in chains:
             self.copies.append({register: Signal(register.size, name=f"{register.name}_copy", reset_less=True)
-                                if register.in_memory else register.storage for register in chain})
+                                if register.memory else register.storage for register in chain})
             for register in chain:
-                register.in_memory = True
+                register.memory = self
 
         words = Memory(32, CSR_PAGING // 4)
         self._write, self._read = words.get_port(write_capable=True), words.get_port(mode=READ_FIRST)
@@ -99,13 +101,35 @@ class PassParameters(LiteXModule):
                 loads += len(copy)
                 self.sync += If(moves, copy.eq(wider))
 
-    def connect(self, bank):
-        """Returns the statements that connect the memory with the block's register bank."""
-        address, bus = self._write.adr, bank.bus
-        numbers = [bank.simple_csrs.index(register.simple_csrs[0]) for register in self._order]
-        return [
-            address.eq(bus.adr),
-            self._write.dat_w.eq(bus.dat_w),
-            self._write.we.eq(bus.we & bank.addressed),
+        self._is_connected = False
+
+    def connect(self, stage, registers):
+        """Connects the memory with the bus of `stage`, a `RegisterStage`, instead of the strobes of the registers: a word for each of
+        `registers`, those of the bank behind the stage. This takes less logic, because the address on the bus is that of the word."""
+        self._is_connected = True
+        self._connect([registers.index(register.register) for register in self._order],
+                      stage.bus.adr, stage.bus.dat_w, stage.bus.we & stage.addressed)
+
+    def do_finalize(self):
+        if self._is_connected:
+            return
+        # Flip-flops shorten the path from the bus. Strobes of LiteX's banks are combinational.
+        registers = list(dict.fromkeys(self._order))
+        number, data, writes = Signal(max=len(registers)), Signal(32), Signal()
+        strobes = [register.register.re for register in registers]
+        self.sync += [
+            number.eq(reduce(or_, (Mux(strobe, place, 0) for place, strobe in enumerate(strobes)))),
+            # Every register of a bank shows the same written data.
+            data.eq(max(registers, key=lambda register: register.size).register.r),
+            writes.eq(reduce(or_, strobes)),
+        ]
+        self._connect([registers.index(register) for register in self._order], number, data, writes)
+
+    def _connect(self, numbers, address, data, writes):
+        """Connects the ports of the memory. `numbers` are the addresses of the words of `_order`."""
+        self.comb += [
+            self._write.adr.eq(address),
+            self._write.dat_w.eq(data),
+            self._write.we.eq(writes),
             Case(self._turn, {turn: self._read.adr.eq(number) for turn, number in enumerate(numbers)}),
         ]

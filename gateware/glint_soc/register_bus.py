@@ -1,13 +1,15 @@
-"""Register banks and their bridge to the CPU's bus. Each bank registers its address and its selection."""
+"""Bridge from the CPU's bus to LiteX's register banks, with a stage before each bank that registers the bank's address and selection."""
 
 from litex.gen import LiteXModule
 from litex.soc.interconnect import wishbone
-from litex.soc.interconnect.csr_bus import CSRBank, Interface
-from migen import FSM, Cat, ClockDomainsRenamer, If, NextState, Signal, log2_int
+from litex.soc.interconnect.csr_bus import Interface, InterconnectShared
+from migen import FSM, Cat, ClockDomainsRenamer, If, Mux, NextState, Signal, log2_int
+
+from .register_map import CSR_PAGING
 
 
-class RegisterBank(CSRBank):
-    """A bank of registers whose selection is stored in a flip-flop.
+class RegisterStage(LiteXModule):
+    """Stands before a register bank of LiteX, and stores the bank's selection in a flip-flop.
 
     In LiteX's bank, the whole bus address selects a register. In a large FPGA this path, from the bridge to the block, is the
     longest path. Here each bank compares the window number with its own, and stores the result together with the address within the
@@ -16,36 +18,31 @@ class RegisterBank(CSRBank):
         bus ─▶ is this the window? ─▶ flip-flops ─▶ LiteX's bank ─▶ data
 
     Read data are valid two clocks after the access. A write takes effect one clock later than in LiteX, so the bus must hold the written
-    data for one more clock. `addressed` is high while `bus` shows an access to the bank. If the registers have the attribute
-    `clock_domain`, the bank is in that clock domain.
+    data for one more clock. `addressed` is high while `bus` shows an access to the bank.
     """
 
-    def __init__(self, description, address=0, bus=None, paging=0x800, ordering="big"):
-        access, selected = Interface.like(bus), Signal()
-        CSRBank.__init__(self, description, 1, access, paging, ordering)
-        self.bus, self.addressed = bus, Signal()
+    def __init__(self, bank, window, paging=CSR_PAGING):
+        self.bus, self.addressed = Interface.like(bank.bus), Signal()
 
-        number, in_window = Signal(log2_int(paging // 4)), Signal()
+        number, in_window, selected = Signal(log2_int(paging // 4)), Signal(), Signal()
         self.comb += [
-            in_window.eq(bus.adr[len(number):] == address),
-            self.addressed.eq(in_window & (bus.re | bus.we)),
-            access.adr.eq(Cat(number, selected)),
-            access.dat_w.eq(bus.dat_w),
-            bus.dat_r.eq(access.dat_r),
+            in_window.eq(self.bus.adr[len(number):] == window),
+            self.addressed.eq(in_window & (self.bus.re | self.bus.we)),
+            # Synthesis reduces the bank's comparison with its window to `selected`: all other bits are constant.
+            bank.bus.adr.eq(Cat(number, Mux(selected, window, window ^ 1))),
+            bank.bus.dat_w.eq(self.bus.dat_w),
+            self.bus.dat_r.eq(bank.bus.dat_r),
         ]
         self.sync += [
             selected.eq(in_window),
-            number.eq(bus.adr),
-            access.we.eq(bus.we),
-            access.re.eq(bus.re),
+            number.eq(self.bus.adr),
+            bank.bus.we.eq(self.bus.we),
+            bank.bus.re.eq(self.bus.re),
         ]
-        if domain := getattr(description[0], "clock_domain", None):
-            ClockDomainsRenamer(domain)(self)
 
 
 class RegisterBridge(LiteXModule):
-    """Replaces LiteX's bridge for `RegisterBank`s: a Wishbone slave that accesses the bus of the banks. The Wishbone request must come
-    from flip-flops.
+    """Bridge for `RegisterStage`s: a Wishbone slave that accesses the bus of the banks. The Wishbone request must come from flip-flops.
 
         clock   0        1         2
         csr     access   address, written data stay
@@ -53,8 +50,8 @@ class RegisterBridge(LiteXModule):
         wishbone                   acknowledgement
     """
 
-    def __init__(self, bus_wishbone=None, bus_csr=None, register=True):
-        self.wishbone, self.csr = bus_wishbone or wishbone.Interface(), bus_csr or Interface(data_width=32)
+    def __init__(self, bus_wishbone, bus_csr):
+        self.wishbone, self.csr = bus_wishbone, bus_csr
 
         self.comb += [
             self.csr.adr.eq(self.wishbone.adr),
@@ -74,3 +71,35 @@ class RegisterBridge(LiteXModule):
             self.wishbone.ack.eq(1),
             NextState("ACCESS"),
         )
+
+
+class RegisterBus(LiteXModule):
+    """The bridge and the stages of a SoC, in place of LiteX's bridge and of its interconnect between bridge and banks.
+
+    `banks` is a function that returns the banks of LiteX's `CSRBankArray`. LiteX makes them when it finalizes the SoC, just before it
+    finalizes its submodules. This module must be the SoC's first submodule, because it changes banks and parameters that are not yet
+    finalized. It connects the memories of `PassParameters` with the bus, which takes less logic than the strobes of the registers.
+    Registers with the attribute `clock_domain` have their bank in that domain, and `accessed` of such a register is set while the bus
+    shows an access to the bank.
+    """
+
+    def __init__(self, banks):
+        self._banks = banks
+        self.bridge = RegisterBridge(
+            wishbone.Interface(data_width=32, address_width=32, addressing="word"), Interface(data_width=32))
+
+    def do_finalize(self):
+        stages = []
+        for _, registers, window, bank in self._banks():
+            if bank.get_fragment_called:
+                raise ValueError("the banks are finalized: expected RegisterBus as the first submodule of the SoC")
+            stage = RegisterStage(bank, window)
+            for parameters in {register.memory: None for register in registers if getattr(register, "memory", None)}:
+                parameters.connect(stage, bank.simple_csrs)
+            if domain := getattr(registers[0], "clock_domain", None):
+                self.comb += registers[0].accessed.eq(stage.addressed)
+                for part in (bank, stage):
+                    ClockDomainsRenamer(domain)(part)
+            self.submodules += stage
+            stages.append(stage)
+        self.interconnect = InterconnectShared([self.bridge.csr], [stage.bus for stage in stages])

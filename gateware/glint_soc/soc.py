@@ -4,18 +4,15 @@ A board adds its platform, its clocks (domains `sys` and `pix`), its memory with
 that are visible to firmware are in this module.
 """
 
-from functools import partial
-from unittest.mock import patch
-
 from litedram.common import LiteDRAMNativePort
 from litex.soc.cores.gpio import GPIOIn, GPIOOut
 from litex.soc.integration.soc import SoCRegion
 from litex.soc.integration.soc_core import SoCCore
-from litex.soc.interconnect import csr_bus, wishbone
+from litex.soc.interconnect import wishbone
 from migen import Cat, Constant, ResetInserter, Signal, log2_int
 
 from .constants import FLASH_BYTES, FLASH_FIRMWARE
-from .cpu_bus import BusDecoder, CpuBus
+from .cpu_bus import BusSelections, CpuBus
 from .digits import Digits
 from .flash import FlashReader
 from .gesture import GestureEngine
@@ -25,7 +22,7 @@ from .raymarch import Fields, Raymarcher
 from .memory_bridge import MemoryBridge
 from .memory_controller import MemoryController
 from .parameters import without_reading
-from .register_bus import RegisterBank, RegisterBridge
+from .register_bus import RegisterBus
 from .register_map import CSR_MAP, CSR_PAGING, OPTIONAL_BLOCKS, PINNED
 from .scanout import Scanout
 from .triangle import TriangleEngine
@@ -107,6 +104,8 @@ class GlintSoC(SoCCore):
             name: location.irq for name, location in PINNED.items()
             if location.irq is not None and (name not in OPTIONAL_BLOCKS or name in self.blocks)
         }
+        # LiteX finalizes submodules in the order in which they were added.
+        self.register_bus = RegisterBus(lambda: self.csr_bankarray.banks)
         self.crg = crg
         SoCCore.__init__(
             self, platform, clk_freq=int(sys_clk_freq),
@@ -153,22 +152,19 @@ class GlintSoC(SoCCore):
         self.cpu_bus = ResetInserter()(CpuBus(self.cpu.dbus, self.cpu.ibus))
         self.comb += self.cpu_bus.reset.eq(self.cpu.reset)
         self.bus.add_master("cpu", self.cpu_bus.bus)
+        self.bus_selections = BusSelections(self.cpu_bus)
 
-    def finalize(self, *arguments, **options):
-        """Finalizes the SoC, with register banks, their bridge and the decoder of the bus of this project: LiteX has no parameters for
-        these classes."""
-        with (patch.object(csr_bus, "CSRBank", RegisterBank), patch.object(wishbone, "Wishbone2CSR", RegisterBridge),
-              patch.object(wishbone, "Decoder", partial(BusDecoder, self.cpu_bus))):
-            SoCCore.finalize(self, *arguments, **options)
-
-    def do_finalize(self):
-        # LiteX creates the register banks and numbers the registers only when it finalizes the SoC.
-        for name, _, _, bank in self.csr_bankarray.banks:
-            block = getattr(self, name, None)
-            if parameters := getattr(block, "parameters", None):
-                self.comb += parameters.connect(bank)
-            if control := getattr(block, "clock_control", None):
-                self.comb += control.accessed.eq(bank.addressed)
+    def add_csr_bridge(self, name="csr", origin=None, register=False):
+        """Adds the bridge to the registers, and the decoder of the bus. LiteX calls this when it finalizes the SoC, after all other slaves
+        of the bus were added. It adds no interconnect of its own, because its list of the masters of registers is empty."""
+        self.bus.add_slave(name, self.register_bus.bridge.wishbone, SoCRegion(
+            origin=origin, size=2**(self.csr.address_width + 2), cached=False, decode=self.cpu.csr_decode))
+        self.add_config("CSR_DATA_WIDTH", self.csr.data_width)
+        self.add_config("CSR_ALIGNMENT", self.csr.alignment)
+        # The selections are already stored.
+        self.bus.interconnect_register = False
+        for region in self.bus.regions.values():
+            region.decoder = lambda bus, decoder=region.decoder: self.bus_selections.stored(decoder(bus))
 
     def _inputs(self, name, bits):
         """Returns the input pins `name`, extended to `bits` bits; bits without a pin on the board are 0."""

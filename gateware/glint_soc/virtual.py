@@ -140,7 +140,7 @@ class VirtualSoC(PinSoC):
             if control := getattr(block, "clock_control", None):
                 self._gate_clock(name, block, control.enable)
                 for register in block.get_csrs():
-                    register.clock_domain = name
+                    register.clock_domain, register.accessed = name, control.accessed
         for number, bank in enumerate(self.sdram.controller.banks):
             control = ClockControl(bank.req.valid | bank.req.lock | bank.refresh_req)
             setattr(self, f"bank{number}_clock_control", control)

@@ -1,14 +1,15 @@
-"""Test of the parameters of passes: writes and loads at random times."""
+"""Test of the parameters of passes, behind a stage of this project and behind a bank of LiteX alone: writes and loads at random times."""
 
 import random
 
+import pytest
 from litex.gen import LiteXModule
 from litex.soc.interconnect.csr import CSRStorage
-from litex.soc.interconnect.csr_bus import Interface
+from litex.soc.interconnect.csr_bus import CSRBank, Interface
 from migen import run_simulation
 
 from glint_soc.parameters import Parameter, PassParameters
-from glint_soc.register_bus import RegisterBank
+from glint_soc.register_bus import RegisterStage
 from glint_soc.register_map import CSR_PAGING
 
 _WINDOW = 3
@@ -17,22 +18,28 @@ _WINDOW = 3
 class _Block(LiteXModule):
     """A block with an ordinary register, four parameters in two passes (one parameter is in both), and a separate `Parameter`."""
 
-    def __init__(self):
+    def __init__(self, has_stage):
         other = CSRStorage(32, name="other")
         wide, narrow, both, last = (Parameter(size, name=name, description="")
                                     for name, size in {"wide": 32, "narrow": 3, "both": 20, "last": 32}.items())
         alone = Parameter(8, name="alone", description="")
         self.parameters = PassParameters([wide, narrow, both], [both, last])
         self.registers = [other, wide, alone, narrow, both, last]
-        self.bank = RegisterBank(self.registers, _WINDOW, bus=Interface(data_width=32), paging=CSR_PAGING)
-        self.comb += self.parameters.connect(self.bank)
+        bank = CSRBank(self.registers, _WINDOW, Interface(data_width=32), CSR_PAGING)
+        self.bus = bank.bus
+        if has_stage:
+            self.stage = RegisterStage(bank, _WINDOW)
+            self.bus = self.stage.bus
+            self.parameters.connect(self.stage, bank.simple_csrs)
+        self.submodules += bank
 
 
-def test_loads():
+@pytest.mark.parametrize("has_stage", (True, False))
+def test_loads(has_stage):
     """Checks that the copies for a pass equal the words that software wrote before the load, and hold until the next load."""
     rng = random.Random(1)
-    block = _Block()
-    bus, parameters, registers = block.bank.bus, block.parameters, block.registers
+    block = _Block(has_stage)
+    bus, parameters, registers = block.bus, block.parameters, block.registers
     written, problems = [0] * len(registers), []
     loaded = [dict.fromkeys(copies, None) for copies in parameters.copies]
 
@@ -80,7 +87,7 @@ def test_loads():
             if clocks > 20:
                 problems.append(f"loads of {loads} took {clocks} clocks")
             yield from compare()
-            # At this time the bank has forwarded the last write.
+            # At this time the stage has forwarded the last write.
             alone = registers[2]
             if (found := (yield alone.storage)) != written[2]:
                 problems.append(f"{alone.name}: {found:#x}, expected {written[2]:#x}")

@@ -1,14 +1,13 @@
-"""Test of the register banks and their bridge: accesses of the CPU's bus to two banks, one after the other."""
+"""Test of the stages before register banks and of their bridge: accesses of the CPU's bus to two banks, one after the other."""
 
 import random
 
 from litex.gen import LiteXModule
-from litex.soc.interconnect import wishbone
 from litex.soc.interconnect.csr import CSRStatus, CSRStorage
-from litex.soc.interconnect.csr_bus import Interface, InterconnectShared
+from litex.soc.interconnect.csr_bus import CSRBank, Interface
 from migen import run_simulation
 
-from glint_soc.register_bus import RegisterBank, RegisterBridge
+from glint_soc.register_bus import RegisterBus
 from glint_soc.register_map import CSR_PAGING
 from memory_bench import access
 
@@ -18,20 +17,20 @@ _REGISTERS = 5
 
 
 class _Soc(LiteXModule):
-    """A bridge and two banks, each with registers that the CPU writes and a register that counts the writes to the first of them."""
+    """A bridge, stages and two banks, each with registers that the CPU writes and a register that counts the writes to the first of them."""
 
     def __init__(self):
-        self.bus = wishbone.Interface(data_width=32, address_width=32, addressing="word")
-        self.bridge = RegisterBridge(self.bus, Interface(data_width=32))
         self.registers, banks = [], []
+        self.register_bus = RegisterBus(lambda: banks)
+        self.bus = self.register_bus.bridge.wishbone
         for window in _WINDOWS:
             storages = [CSRStorage(32, name=f"storage{number}") for number in range(_REGISTERS)]
             writes = CSRStatus(32, name="writes", description="")
             self.sync += writes.status.eq(writes.status + storages[0].re)
             self.registers.append(storages)
-            banks.append(RegisterBank([*storages, writes], window, Interface(data_width=32), CSR_PAGING))
-        self.submodules += banks
-        self.interconnect = InterconnectShared([self.bridge.csr], [bank.bus for bank in banks])
+            bank = CSRBank([*storages, writes], window, Interface(data_width=32), CSR_PAGING)
+            self.submodules += bank
+            banks.append((f"bank{window}", [*storages, writes], window, bank))
 
 
 def test_accesses():
