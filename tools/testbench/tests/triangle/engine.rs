@@ -9,6 +9,7 @@ mod gathered;
 mod light;
 mod lines;
 mod objects;
+mod package;
 mod rectangles;
 mod samples;
 mod textured;
