@@ -4,12 +4,11 @@ A board adds its platform, its clocks (domains `sys` and `pix`), its memory with
 that are visible to firmware are in this module.
 """
 
-from litedram.common import LiteDRAMNativePort
 from litex.soc.cores.gpio import GPIOIn, GPIOOut
 from litex.soc.integration.soc import SoCRegion
 from litex.soc.integration.soc_core import SoCCore
 from litex.soc.interconnect import wishbone
-from migen import Cat, Constant, ResetInserter, Signal, log2_int
+from migen import Cat, Constant, ResetInserter, Signal
 
 from .constants import FLASH_BYTES, FLASH_FIRMWARE
 from .cpu_bus import BusSelections, CpuBus
@@ -25,7 +24,7 @@ from .parameters import without_reading
 from .register_bus import RegisterBus
 from .register_map import CSR_MAP, CSR_PAGING, OPTIONAL_BLOCKS, PINNED
 from .scanout import Scanout
-from .triangle import TriangleEngine
+from .triangle import TriangleEngine, memory_ports
 from .video import CEA_1280X720
 
 SYS_CLK_FREQ = 81.25e6
@@ -197,22 +196,15 @@ class GlintSoC(SoCCore):
         self.memory_bridge = MemoryBridge(bus, port, main_ram.origin, early=width < bus.data_width)
         self.bus.add_slave("main_ram", bus, main_ram)
         if "scanout" in self.blocks:
-            self.scanout = Scanout(self.platform, self._port("read", main_ram), self.mode)
+            self.scanout = Scanout(self.platform, self._port("read"), self.mode)
         if "triangle" in self.blocks:
-            has_lists = self.draws_triangles or self.draws_lines
-            has_geometry = self.geometry and has_lists
-            readers = [self._port("read", main_ram, built)
-                       for built in (has_geometry, has_geometry and self.draws_triangles, has_lists, has_lists and self.texture)]
-            lists = [self._port("write", main_ram, has_geometry) for _ in range(2)]
-            frame = [self._port("write", main_ram) for _ in range(2)]
-            self.triangle = TriangleEngine(self.platform, readers, lists + frame, main_ram, self.mode.sizes,
+            readers, writers = memory_ports(self._port, main_ram, self.draws_triangles, self.texture, self.draws_lines, self.geometry)
+            self.triangle = TriangleEngine(self.platform, readers, writers, main_ram, self.mode.sizes,
                                            self.draws_triangles, self.smooth, self.texture, self.sky, self.fog, self.antialiasing,
-                                           "raymarch" in self.blocks, self.draws_lines, has_geometry, self.depths)
+                                           "raymarch" in self.blocks, self.draws_lines, self.geometry, self.depths)
         if "raymarch" in self.blocks:
             self.raymarch = Raymarcher(self.platform, self.fields, self.triangle)
 
-    def _port(self, mode, main_ram, built=True):
-        """Returns a memory port for an accelerator; an unconnected port if the part that uses the port is not built."""
-        if built:
-            return self.sdram.crossbar.get_port(mode, _PORT_BITS)
-        return LiteDRAMNativePort(mode, log2_int(main_ram.size * 8 // _PORT_BITS), _PORT_BITS)
+    def _port(self, mode):
+        """Returns a memory port for an accelerator."""
+        return self.sdram.crossbar.get_port(mode, _PORT_BITS)

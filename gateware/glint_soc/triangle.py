@@ -3,10 +3,11 @@ memory."""
 
 from itertools import chain
 
+from litedram.common import LiteDRAMNativePort
 from litex.gen import LiteXModule
 from litex.soc.interconnect.csr import CSRField, CSRStatus, CSRStorage
 from litex.soc.interconnect.csr_eventmanager import EventManager, EventSourcePulse
-from migen import Cat, ClockSignal, If, Instance, Record, ResetSignal, Signal, log2_int
+from migen import Cat, ClockSignal, If, Instance, Mux, Record, ResetSignal, Signal, log2_int
 
 from . import constants
 from .clock_control import ClockControl
@@ -56,25 +57,27 @@ class TriangleEngine(LiteXModule):
     """Draws meshes, in two passes that may run at the same time for two frames.
 
     `readers` are four native 128-bit LiteDRAM read ports (triangles, vertices, raster, texels), `writers` four write ports
-    (descriptors, lists, frame in even and in odd banks), all in the domain `sys`. `main_ram` is the region that the ports reach.
+    (descriptors, lists, frame in even and in odd banks), all in the domain `sys`. `main_ram` is the region that the ports reach, of which
+    the engine uses the first 128 MiB.
     `sizes` are the picture sizes of this build, bit k for the size of code k. `smooth` adds smooth shading, `texture` adds textures, which
     use the port of texels (they exclude each other), `has_sky` adds the sky behind triangles, `has_fog` adds fog on triangles, `averages`
     adds pictures with four samples a pixel, `fields` adds the input `field` for a raymarcher, and `lines` adds the line engine. Without `triangles` the engine draws only lines and fields, and does not use the port of the vertices; with neither
     triangles nor lines it uses only the last two writers. The registers are the same. A build without `triangles` may also omit `depths`,
     the memory for the depths of a band. Without `has_geometry`, for builds without lines, the engine draws triangles from the firmware's
-    lists, and does not use the ports of mesh, vertices, descriptors and lists.
+    lists, and does not use the ports of mesh, vertices, descriptors and lists. `pending` is for memories other than LiteDRAM: two signals that
+    are high while words which the writers of lists, or of the frame, have sent may not be in memory yet. A pass ends when they are low.
     """
 
     def __init__(self, platform, readers, writers, main_ram, sizes, triangles=True, smooth=False, texture=False, has_sky=False,
-                 has_fog=False, averages=False, fields=False, lines=False, has_geometry=True, depths=True):
+                 has_fog=False, averages=False, fields=False, lines=False, has_geometry=True, depths=True, pending=None):
         has_geometry = has_geometry and (triangles or lines)
-        memory_bits = log2_int(main_ram.size // 16)
+        memory_bits = min(log2_int(main_ram.size // 16), _ADDRESS_BITS)
         for port in (*readers, *writers):
-            if port.data_width != 128 or port.address_width != memory_bits:
-                raise ValueError(f"the triangle engine needs memory ports of 128 bits and {memory_bits} address bits, "
+            if port.data_width != 128 or port.address_width < memory_bits:
+                raise ValueError(f"the triangle engine needs memory ports of 128 bits and at least {memory_bits} address bits, "
                                  f"got {port.data_width} and {port.address_width}")
-        if memory_bits > _ADDRESS_BITS or main_ram.origin % main_ram.size:
-            raise ValueError(f"the triangle engine needs at most {16 << _ADDRESS_BITS} bytes of main memory, got {main_ram}")
+        if main_ram.origin % (16 << memory_bits):
+            raise ValueError(f"the triangle engine needs main memory at a multiple of its size, got {main_ram}")
 
         self._ident = CSRStatus(32, name="ident", reset=IDENT, description="`TRIA` in ASCII; 0 where the block is absent.")
         self._caps = CSRStatus(name="caps", fields=[
@@ -363,6 +366,7 @@ class TriangleEngine(LiteXModule):
             [geometry_flags, geometry, view, raster_flags, raster, sky, fog, results, status, self.counters.events, field_source, field_sink,
              *read_ports["mesh"].values(), *write_ports["lists"].values()])
 
+        given = status if pending is None else self._held(status, *pending)
         geometry_kept, raster_kept = geometry_flags.signals(), raster_flags.signals()
         start = {name: Signal(name=name) for name in ("geometry_start", "raster_start")}
         cancel = self._control.fields.cancel
@@ -402,7 +406,7 @@ class TriangleEngine(LiteXModule):
             o_raster_active    = self._status.fields.raster_busy,
             o_raster_ended     = self.ev.raster.trigger,
             o_raster_error     = self._status.fields.raster_error,
-            i_engine           = status.value,
+            i_engine           = given.value,
             o_recovering       = recovering,
             **{f"o_{name}": signal for name, signal in start.items()},
         )
@@ -440,6 +444,37 @@ class TriangleEngine(LiteXModule):
         )
         add_sources(platform, "triangle_control", "triangle_engine")
 
+    def _held(self, status, lists_pending, frame_pending):
+        """Returns the engine's state `status` with ends of passes delayed until all words are in memory."""
+        held = status.signals()
+        cancel = self._control.fields.cancel
+        self.comb += held["ready"].eq(status["ready"] & ~lists_pending & ~frame_pending)
+        for name, pending, errors in (("geometry", lists_pending, ("mesh_error", "full")), ("raster", frame_pending, ("list_error",))):
+            done, waits = status[f"{name}_done"], Signal()
+            self.sync += waits.eq((done | waits) & pending & ~cancel)
+            self.comb += [
+                held[f"{name}_busy"].eq(status[f"{name}_busy"] | done | waits),
+                held[f"{name}_done"].eq((done | waits) & ~pending),
+            ]
+            for error in errors:
+                kept = Signal()
+                self.sync += If(done, kept.eq(status[error]))
+                self.comb += held[error].eq(Mux(waits, kept, status[error]))
+        return held
+
+
+def memory_ports(get_port, main_ram, triangles=True, texture=False, lines=False, has_geometry=True):
+    """Returns the readers and the writers for a `TriangleEngine` with these options. `get_port` returns a memory port of 128 bits that reads
+    or writes, from its mode, `"read"` or `"write"`. For a part that is not built, the port is unconnected."""
+    has_lists = triangles or lines
+    has_geometry = has_geometry and has_lists
+
+    def port(mode, is_built):
+        return get_port(mode) if is_built else LiteDRAMNativePort(mode, log2_int(main_ram.size // 16), 128)
+
+    readers = [port("read", built) for built in (has_geometry, has_geometry and triangles, has_lists, has_lists and texture)]
+    return readers, [port("write", built) for built in (has_geometry, has_geometry, True, True)]
+
 
 def _read_port(port):
     """Returns the port connections of a native read port of the memory, in both directions."""
@@ -452,9 +487,10 @@ def _read_port(port):
 
 
 def _address(port):
-    """Returns the address of a port, extended to the width in the RTL. The additional bits are 0 for a smaller memory, because
-    the regions of a pass are checked to be within memory."""
-    return Cat(port.cmd.addr, Signal(_ADDRESS_BITS - len(port.cmd.addr))) if len(port.cmd.addr) < _ADDRESS_BITS else port.cmd.addr
+    """Returns the address of a port with the width in the RTL. The highest bits are 0 for a smaller memory, because the regions of a pass are
+    checked to be within memory; in a larger memory, the port's other bits stay 0."""
+    address = port.cmd.addr[:_ADDRESS_BITS]
+    return Cat(address, Signal(_ADDRESS_BITS - len(address))) if len(address) < _ADDRESS_BITS else address
 
 
 def _write_port(port):
