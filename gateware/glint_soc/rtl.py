@@ -1,4 +1,4 @@
-"""The SystemVerilog files of a module, found in the folder `gateware/rtl`.
+"""The SystemVerilog files of a module, found in the folder `gateware/rtl`, or in `glint_soc/sources` of an installed package.
 
 Every module or package has a file of its own name. A module's sources are its file and those of all packages that it names
 and modules that it instantiates, recursively. LiteX, Yosys, the Verilator benches and the proofs all use `sources`.
@@ -8,8 +8,10 @@ import re
 from functools import cache
 from pathlib import Path
 
+_INSTALLED = Path(__file__).resolve().parent / "sources"
+
 ROOT = Path(__file__).resolve().parent.parent.parent
-RTL = ROOT / "gateware" / "rtl"
+RTL = _INSTALLED if _INSTALLED.is_dir() else ROOT / "gateware" / "rtl"
 CORE = ROOT / "firmware" / "core" / "src" / "gateware"
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.S)

