@@ -40,9 +40,9 @@ def simulate(folder, name):
     shutil.rmtree(objects, ignore_errors=True)
     # Warnings of the lint are off: LiteX's Verilog causes many, and the modules of the engines are checked elsewhere.
     verilate(root, "--cc", "-O3", "--no-timing", "-Wno-fatal", "-Wno-lint", "-Wno-COMBDLY", "--x-assign", "fast", "--x-initial", "fast",
-             "--output-split", "0", "--prefix", "Vmodel", "--top-module", name, "-Mdir", objects, folder / f"{name}.sv")
+             "--output-split", "0", "--top-module", name, "-Mdir", objects, folder / f"{name}.sv")
     include = root / "include"
-    model = [*objects.glob("Vmodel*.cpp"), folder / "testbench.cpp"]
+    model = [*objects.glob(f"V{name}*.cpp"), folder / "testbench.cpp"]
     # One file for all: to compile the parts apart takes longer.
     whole = objects / "whole.cpp"
     whole.write_text("".join(f'#include "{path.resolve()}"\n' for path in model))
