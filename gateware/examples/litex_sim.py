@@ -59,7 +59,7 @@ class SimSoC(SoCCore):
 if __name__ == "__main__":
     soc, folder = SimSoC(), Path(sys.argv[1])
     soc.finalize()
-    core = {"name": NAME, "clock": CLOCK / 1e6, "registers": "wishbone", "blocks": ("triangle", "scanout"),
+    core = {"name": NAME, "clock": CLOCK / 1e6, "registers": "wishbone", "blocks": {"triangle": {}, "scanout": {}},
             "memory": {"bus": "host", "origin": soc.mem_map["main_ram"]}}
     generate.write(soc, generate.verilog(soc, NAME, special_overrides=sim_special_overrides), core, MODE, folder)
     sys.exit(simulate(folder, NAME))

@@ -187,6 +187,8 @@ def write(soc, text, core, video, folder):
     """
     registers, origin = vectors.registers(soc), core["memory"]["origin"]
     stimulus = []
+    if core["blocks"].get("raymarch") == {"fields": "faces"}:
+        stimulus += vectors.resolved(vectors.SPONGE.read_text(), registers, origin)
     if "triangle" in core["blocks"]:
         stimulus += vectors.resolved(vectors.CUBE.read_text(), registers, origin)
     if video:

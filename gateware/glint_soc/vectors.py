@@ -3,7 +3,7 @@
     memory OFFSET               place of the following words
     words WORD ...              words of 32 bits
     fill OFFSET COUNT           words of a fixed pattern
-    write REGISTER VALUE        write of a register
+    write REGISTER VALUE ...    writes of a register
     address REGISTER OFFSET     write of an address in memory
     copy FROM TO                write of a register's value to another one
     wait REGISTER MASK          until these bits are 0
@@ -12,7 +12,8 @@
     runs COUNT*COLOUR ...       the picture's pixels
     shown OFFSET WIDTH HEIGHT   comparison of the next shown frame with a picture in memory
 
-Counts, widths and heights are decimal numbers, all others hexadecimal. Registers are named as in LiteX's exports.
+Counts, widths and heights are decimal numbers, all others hexadecimal. Registers are named as in LiteX's exports, or by the name of the
+block and the offset in its window, such as `raymarch+4`.
 """
 
 from pathlib import Path
@@ -22,6 +23,9 @@ from .constants import SIZES
 CUBE = Path(__file__).resolve().parent / "vectors" / "cube.txt"
 """A cube for the triangle engine, with its picture by the model. A test of `tools/testbench` generates it."""
 
+SPONGE = CUBE.with_name("sponge.txt")
+"""A sponge for the raymarcher's build `faces`, with its picture by the model. A test of `firmware/engines` generates it."""
+
 _OFFSETS = {"memory": 1, "fill": 1, "address": 2, "picture": 1, "shown": 1}
 """For each command, the number of its argument that is an offset in memory."""
 
@@ -30,10 +34,10 @@ _REGISTERS = {"write": (1,), "address": (1,), "copy": (1, 2), "wait": (1,), "exp
 
 
 def registers(soc):
-    """Returns the addresses of the registers of a finalized SoC by name."""
+    """Returns the addresses of the registers and of the windows of a finalized SoC by name."""
     places = {}
     for name, region in soc.csr_regions.items():
-        place = region.origin
+        place = places[name] = region.origin
         for register in region.obj if isinstance(region.obj, list) else ():
             places[f"{name}_{register.name}"] = place
             place += 4 * -(-register.size // region.busword)
@@ -48,7 +52,8 @@ def resolved(text, places, origin):
         if not words or words[0].startswith("#"):
             continue
         for argument in _REGISTERS.get(words[0], ()):
-            words[argument] = f"{places[words[argument]]:x}"
+            name, _, offset = words[argument].partition("+")
+            words[argument] = f"{places[name] + int(offset or '0', 16):x}"
         if argument := _OFFSETS.get(words[0]):
             words[argument] = f"{int(words[argument], 16) + origin:x}"
         if words[0] == "address":

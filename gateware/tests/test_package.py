@@ -13,7 +13,7 @@ import yaml
 from litedram.common import LiteDRAMNativePort
 from migen import passive, run_simulation
 
-from glint_soc import generate
+from glint_soc import generate, packages, vectors
 from glint_soc.memory_ports import AxiPorts
 from verilate.programs import GATEWARE, digest, files_below, is_current, run_verilator
 
@@ -62,6 +62,7 @@ def _run(*command, environment=None):
 @pytest.mark.parametrize(("name", "equal"), [
     ("scanout", ["a frame of 1280 x 720 pixels, shown in 1280 x 720"]),
     ("triangle", ["320 x 180 pixels"]),
+    ("raymarch", ["320 x 180 pixels", "320 x 180 pixels"]),
     ("triangle_wishbone", ["320 x 180 pixels", "a frame of 320 x 180 pixels, shown in 640 x 360"]),
 ])
 def test_core(installed, name, equal):
@@ -104,13 +105,26 @@ def test_arty(installed, engines, modules, interrupts):
     assert output.splitlines()[-2:] == [modules, interrupts]
 
 
-def test_raymarcher(tmp_path):
-    """Generates a core with the raymarcher, which Verilator reads."""
-    core = generate.description(yaml.safe_load((_EXAMPLES / "raymarch.yml").read_text()))
-    generate.generate(core, tmp_path)
-    run_verilator("--lint-only", "-Wno-fatal", "-Wno-lint", "--top-module", core["name"], tmp_path / f"{core['name']}.sv")
-    registers = (tmp_path / "csr.json").read_text()
-    assert '"raymarch": 22528' in registers
+def test_registers():
+    """Checks that the registers of a core are at the same places as in Glint's own SoC, so that its drivers fit."""
+    soc, full = generate.Core(generate.description(yaml.safe_load((_EXAMPLES / "raymarch.yml").read_text()))), packages.full_soc()
+    soc.finalize()
+    found, expected = vectors.registers(soc), vectors.registers(full)
+    own = {"memory", "memory_errors"}
+    base = full.mem_map["csr"]
+    assert {name: base + place for name, place in found.items() if name not in own} == {
+        name: place for name, place in expected.items() if name in found.keys() - own}
+    assert {name for name in expected if name.startswith(("triangle", "raymarch"))} == found.keys() - own
+
+
+@pytest.mark.parametrize("options", ["smooth: true, lines: true", "texture: true, sky: true, fog: true, antialiasing: true"])
+def test_options(tmp_path, options):
+    """Generates cores with options of the triangle engine, which Verilator reads; equal descriptions give equal files."""
+    core = generate.description(yaml.safe_load(f"{{name: core, blocks: {{scanout: {{}}, triangle: {{{options}}}}}}}"))
+    for folder in ("first", "second"):
+        generate.generate(core, tmp_path / folder)
+    assert all((tmp_path / "second" / path.name).read_text() == path.read_text() for path in (tmp_path / "first").iterdir())
+    run_verilator("--lint-only", "-Wno-fatal", "-Wno-lint", "--top-module", "core", tmp_path / "first" / "core.sv")
 
 
 @pytest.mark.parametrize(("text", "expected"), [
