@@ -9,7 +9,7 @@ from migen.fhdl.specials import Tristate
 from .clock_control import ClockControl
 from .counters import Counters
 from .packed import Enumeration, Package, Struct
-from .parameters import Parameter
+from .parameters import Parameter, driven_bits
 from .rtl import add_sources
 
 IDENT = int.from_bytes(b"GEST", "big")
@@ -197,9 +197,9 @@ class GestureEngine(LiteXModule):
             "sum_y": self._sum_y.status,
             "box_x": span(self._box_x),
             "box_y": span(self._box_y),
-            "sum_xx": self._sum_xx.status[:_PRODUCT_BITS],
-            "sum_xy": self._sum_xy.status[:_PRODUCT_BITS],
-            "sum_yy": self._sum_yy.status[:_PRODUCT_BITS],
+            "sum_xx": driven_bits(self, self._sum_xx, _PRODUCT_BITS),
+            "sum_xy": driven_bits(self, self._sum_xy, _PRODUCT_BITS),
+            "sum_yy": driven_bits(self, self._sum_yy, _PRODUCT_BITS),
         })
         snapshot = Struct("snapshot_t", "Request for a small picture, and the read position in the picture. `start`, `set` and `move` are "
                           "high for one clock.", {

@@ -6,7 +6,7 @@ from operator import or_
 
 from litex.gen import LiteXModule
 from litex.soc.interconnect.csr import CSR, CSRStorage
-from migen import READ_FIRST, Case, If, Memory, Mux, Signal
+from migen import READ_FIRST, Case, Cat, Constant, If, Memory, Mux, Signal
 
 from .register_map import CSR_PAGING
 
@@ -47,6 +47,14 @@ def without_reading(storage):
     # LiteX sorts the registers of a core by these numbers.
     register.duid = storage.duid
     return register
+
+
+def driven_bits(module, register, bits, lowest=0):
+    """Returns a signal for `bits` bits of a `CSRStatus` of `module`, from bit `lowest` on. The register's other bits are 0: if an instance
+    drove only a part of the register, they would have no driver, and other simulators would read an undefined value."""
+    driven = Signal(bits, name=f"{register.name}_bits")
+    module.comb += register.status.eq(Cat(Constant(0, lowest), driven) if lowest else driven)
+    return driven
 
 
 class PassParameters(LiteXModule):

@@ -6,6 +6,7 @@ from litex.soc.interconnect.csr_eventmanager import EventManager, EventSourcePul
 from migen import ClockSignal, Instance, Record, ResetSignal, Signal
 
 from .counters import Counters
+from .parameters import driven_bits
 from .rtl import add_sources
 
 IDENT = int.from_bytes(b"SCAN", "big")
@@ -102,7 +103,7 @@ class Scanout(LiteXModule):
             i_frame_base      = self._fb_next.storage[4:],
             o_enabled         = enabled,
             o_scale_current   = scale_current,
-            o_frame_current   = self._fb_current.status[4:],
+            o_frame_current   = driven_bits(self, self._fb_current, _WORD_ADDRESS_BITS, 4),
             o_fetching        = fetching,
             o_error           = error,
             o_vblank          = self.ev.vblank.trigger,

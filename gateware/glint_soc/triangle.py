@@ -13,7 +13,7 @@ from . import constants
 from .clock_control import ClockControl
 from .counters import Counters
 from .packed import Enumeration, Package, Struct
-from .parameters import Parameter, PassParameters
+from .parameters import Parameter, PassParameters, driven_bits
 from .records import DESCRIPTOR, LIGHT_BYTES, TEXTURE_BYTES
 from .rtl import add_sources
 
@@ -349,7 +349,7 @@ class TriangleEngine(LiteXModule):
                      "\"Fog\").", {name: register.storage for name, register in fog.items()})
         counts = ("descriptor_count", "exception_count")
         results = Struct("results_t", "Results of the geometry pass.", {
-            name: register.status[:_COUNT_BITS] if name in counts else register.status for name, register in results.items()})
+            name: driven_bits(self, register, _COUNT_BITS) if name in counts else register.status for name, register in results.items()})
         status = Struct("status_t", "State of the engine. `geometry_done` and `raster_done` are high for one clock; the errors "
                         "are valid in that clock.", {
             name: Signal(name=f"engine_{name}") for name in (
