@@ -3,7 +3,7 @@
 import runpy
 from types import SimpleNamespace
 
-from litedram.common import cmd_request_rw_layout
+from litedram.common import LiteDRAMNativePort, cmd_request_rw_layout
 from litedram.phy.dfi import Interface
 from litex.soc.interconnect import stream, wishbone
 from migen import Module, Signal
@@ -85,7 +85,62 @@ class _Multiplexer(Module):
         self.ios = add_ports(self, inputs, outputs)
 
 
+class _AxiPorts(Module):
+    """The class `joined` between two readers, two writers and an AXI port, with words of 16 bits, addresses of 3 bits, an origin, and at most
+    two pending writes of a port."""
+
+    def __init__(self, joined):
+        readers, writers = ([LiteDRAMNativePort(mode, 3, 16) for _ in range(2)] for mode in ("read", "write"))
+        self.submodules.ports = ports = joined([*readers, *writers], _ORIGIN, most_writes=2)
+        axi = ports.axi
+        native = _native(readers, writers)
+        self.ios = add_ports(
+            self, native[0] | _channels(axi, "ar_ready aw_ready w_ready r_valid r_id r_data r_resp b_valid b_id b_resp"),
+            native[1] | _channels(axi, "ar_valid ar_addr ar_id ar_len ar_size ar_burst aw_valid aw_addr aw_id aw_len aw_size aw_burst "
+                                       "w_valid w_data w_strb w_last r_ready b_ready")
+            | {"pending": [ports.pending], "error": [ports.error]})
+
+
+class _WishbonePorts(Module):
+    """The class `joined` between two readers, two writers and a Wishbone port, with words and addresses as in `_AxiPorts`."""
+
+    def __init__(self, joined):
+        readers, writers = ([LiteDRAMNativePort(mode, 3, 16) for _ in range(2)] for mode in ("read", "write"))
+        self.submodules.ports = ports = joined([*readers, *writers], _ORIGIN)
+        native, bus = _native(readers, writers), {"bus": ports.bus}
+        self.ios = add_ports(self, native[0] | members(bus, "ack err dat_r"),
+                             native[1] | members(bus, "cyc stb we adr dat_w sel") | {"error": [ports.error]})
+
+
+_ORIGIN = 0x40
+
+
+def _native(readers, writers):
+    """Returns the inputs and the outputs of native ports, with an element for each port, the readers first."""
+    ports = [*readers, *writers]
+    return {
+        "cmd_valid": [port.cmd.valid for port in ports],
+        "cmd_addr": [port.cmd.addr for port in ports],
+        "wdata_valid": [port.wdata.valid for port in writers],
+        "wdata": [port.wdata.data for port in writers],
+        "wdata_we": [port.wdata.we for port in writers],
+    }, {
+        "cmd_ready": [port.cmd.ready for port in ports],
+        "wdata_ready": [port.wdata.ready for port in writers],
+        "rdata_valid": [port.rdata.valid for port in readers],
+        "rdata": [port.rdata.data for port in readers],
+    }
+
+
+def _channels(axi, names):
+    """Returns the ports for the given signals of AXI channels, each named CHANNEL_SIGNAL."""
+    return {f"axi_{name}": [getattr(getattr(axi, channel), signal)]
+            for name in names.split() for channel, _, signal in [name.partition("_")]}
+
+
 _MODULES = {
+    "axi_ports": (_AxiPorts, "AxiPorts"),
+    "wishbone_ports": (_WishbonePorts, "WishbonePorts"),
     "memory_crossbar": (_Crossbar, "MemoryCrossbar"),
     "memory_multiplexer": (_Multiplexer, "MemoryMultiplexer"),
     "cpu_bus": (_CpuBus, "CpuBus"),

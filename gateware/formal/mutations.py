@@ -43,6 +43,8 @@ _steps = partial(Mutation, "texture_queue.sv")
 _fog = partial(Mutation, "group_fog.sv")
 _cpu_bus = partial(Mutation, "cpu_bus.py")
 _crossbar = partial(Mutation, "memory_crossbar.py")
+_axi = partial(Mutation, "axi_ports.py")
+_wishbone = partial(Mutation, "wishbone_ports.py")
 _multiplexer = partial(Mutation, "memory_multiplexer.py")
 _paint = partial(Mutation, "ray_paint.sv")
 _ring = partial(Mutation, "ring_lane.sv")
@@ -386,6 +388,33 @@ MUTATIONS = {
         _multiplexer("bank.refresh_req.eq(refresher.cmd.valid)", "bank.refresh_req.eq(0)", "asks_all"),
         # Fault: the direction changes only when no command of the other direction is pending.
         _multiplexer("~pending | left[-1]", "~pending", "given_in_time"),
+    ],
+    "axi_ports": [
+        _axi("turns.holds.eq(channel.valid & ~channel.ready)", "turns.holds.eq(0)", "read_addresses.payload_stable"),
+        _axi("port.cmd.valid & (level", "~axi.b.valid & port.cmd.valid & (level", "write_addresses.valid_stays"),
+        _axi("mine & want & channel.ready", "want & channel.ready", "reads_pass"),
+        _axi("mine & want & channel.ready", "want & channel.ready", "writes_pass"),
+        _axi("channel.burst.eq(_BURST_INCR), ", "", "single_words"),
+        _axi("axi.w.valid.eq(order.source.valid & ", "axi.w.valid.eq(", "word_follows"),
+        _axi("order.source.ready & (order.source.port == number)", "order.source.ready", "word_taken"),
+        _axi("axi.r.valid & (axi.r.id == number)", "axi.r.valid", "answers_pass"),
+        _axi("axi.r.ready.eq(1)", "axi.r.ready.eq(~axi.aw.valid)", "answers_taken"),
+        # Fault: a write counts as done when its word is taken.
+        _axi("axi.b.valid & (axi.b.id == number)", "port.wdata.ready", "pending_writes"),
+        _axi("(level != most_writes) & order.sink.ready", "order.sink.ready", "not_too_many"),
+        _axi("axi.b.valid & (axi.b.resp != _RESPONSE_OKAY)", "0", "errors"),
+        _axi("turns.holds.eq(channel.valid & ~channel.ready)", "turns.holds.eq(channel.valid)", "taken_in_time"),
+    ],
+    "wishbone_ports": [
+        _wishbone("bus.sel.eq(Mux(bus.we,", "bus.sel.eq(Mux(self.error,", "requests.payload_stable"),
+        _wishbone("If(ended, NextState(\"COMMAND\"))", "NextState(\"COMMAND\")", "requests.valid_stays"),
+        _wishbone("port.cmd.ready.eq(mine)", "port.cmd.ready.eq(1)", "one_at_a_time"),
+        _wishbone("int(port.mode == \"write\")", "int(port.mode == \"read\")", "as_it_came"),
+        _wishbone("Mux(bus.we, self._selected(owners,", "Mux(~bus.we, self._selected(owners,", "word_passes"),
+        _wishbone("port.wdata.ready.eq(ended & owner[number])", "port.wdata.ready.eq(ended)", "word_taken"),
+        _wishbone("port.rdata.valid.eq(ended & owner[number])", "port.rdata.valid.eq(ended)", "read_answered"),
+        _wishbone("bus.cyc & bus.err", "bus.err & 0", "errors"),
+        _wishbone("turns.wants.eq(Cat(*wants))", "turns.wants.eq(Cat(wants[0]))", "taken_in_time"),
     ],
     "memory_crossbar": [
         _crossbar("(turn[number] & may)", "(may)", "one_at_a_time"),

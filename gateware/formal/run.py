@@ -95,6 +95,8 @@ PROOFS = [
     Proof("memory_crossbar", "memory_crossbar_proof", 12, programs=("memory_crossbar",), engine=_WORDS),
     Proof("memory_multiplexer", "memory_multiplexer_proof", 36, programs=("memory_multiplexer",)),
     Proof("cpu_bus", "cpu_bus_proof", 24, programs=("cpu_bus",)),
+    Proof("axi_ports", "axi_ports_proof", 18, programs=("axi_ports",), engine=_WORDS),
+    Proof("wishbone_ports", "wishbone_ports_proof", 24, programs=("wishbone_ports",)),
     Proof("skid_buffer", "buffer_proof", 24),
     Proof("fifo of 2", "buffer_proof", 24, parameters={"DEPTH": 2}),
     Proof("fifo of 4", "buffer_proof", 24, parameters={"DEPTH": 4}),

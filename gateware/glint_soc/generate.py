@@ -24,13 +24,14 @@ from litex.soc.interconnect.axi import AXILiteInterface
 from migen import ClockDomain, log2_int
 
 from . import vectors
-from .memory_ports import AxiPorts, WishbonePorts
+from .axi_ports import AxiPorts
 from .raymarch import Raymarcher, build
 from .register_map import CSR_MAP, CSR_PAGING
 from .scanout import VIDEO_LAYOUT, Scanout
 from .simulate import simulate
 from .triangle import TriangleEngine, memory_ports
 from .video import CEA_640X480, CEA_1280X720
+from .wishbone_ports import WishbonePorts
 
 MODES = {"1280x720": CEA_1280X720, "640x480": CEA_640X480}
 """Video modes of the scan-out."""

@@ -14,7 +14,8 @@ from litedram.common import LiteDRAMNativePort
 from migen import passive, run_simulation
 
 from glint_soc import generate, packages, vectors
-from glint_soc.memory_ports import AxiPorts
+from glint_soc.axi_ports import AxiPorts
+from resources.tools import run_yosys
 from verilate.programs import GATEWARE, digest, files_below, is_current, run_verilator
 
 _EXAMPLES = GATEWARE / "examples"
@@ -117,10 +118,23 @@ def test_registers():
     assert {name for name in expected if name.startswith(("triangle", "raymarch"))} == found.keys() - own
 
 
-@pytest.mark.parametrize("options", ["smooth: true, lines: true", "texture: true, sky: true, fog: true, antialiasing: true"])
-def test_options(tmp_path, options):
-    """Generates cores with options of the triangle engine, which Verilator reads; equal descriptions give equal files."""
-    core = generate.description(yaml.safe_load(f"{{name: core, blocks: {{scanout: {{}}, triangle: {{{options}}}}}}}"))
+@pytest.mark.parametrize("name", ["scanout", "triangle_wishbone"])
+def test_read_by_yosys(tmp_path, name):
+    """Checks that Yosys reads a core, and that every bit in its top module has one driver."""
+    core = generate.description(yaml.safe_load((_EXAMPLES / f"{name}.yml").read_text()))
+    generate.generate(core, tmp_path)
+    top = core["name"]
+    run_yosys(f"hierarchy -check -top {top}; proc {top}; check -assert {top}", [tmp_path / f"{top}.sv"], tmp_path)
+
+
+@pytest.mark.parametrize("rest", [
+    "blocks: {scanout: {}, triangle: {smooth: true, lines: true}}",
+    "blocks: {triangle: {texture: true, sky: true, fog: true, antialiasing: true}}",
+    "memory: {bus: wishbone}, blocks: {scanout: {}}",
+])
+def test_options(tmp_path, rest):
+    """Generates cores with other options, which Verilator reads; equal descriptions give equal files."""
+    core = generate.description(yaml.safe_load(f"{{name: core, {rest}}}"))
     for folder in ("first", "second"):
         generate.generate(core, tmp_path / folder)
     assert all((tmp_path / "second" / path.name).read_text() == path.read_text() for path in (tmp_path / "first").iterdir())
