@@ -94,9 +94,11 @@ class _Platform(GenericPlatform):
         return self.request(ports[0][0])
 
 
-class _Clocks(LiteXModule):
-    def __init__(self, platform, names):
-        for name, clk, rst in names:
+class Clocks(LiteXModule):
+    """Clock domains, each given by its name, its clock and its reset."""
+
+    def __init__(self, *domains):
+        for name, clk, rst in domains:
             domain = ClockDomain(name)
             setattr(self, f"cd_{name}", domain)
             self.comb += [domain.clk.eq(clk), domain.rst.eq(rst)]
@@ -117,7 +119,7 @@ class Core(SoCMini):
         clocks = [("sys", platform.request("clk"), platform.request("rst"))]
         if "scanout" in core["blocks"]:
             clocks.append(("pix", *(platform.add([(f"pix_{name}", 0, Pins(1))]) for name in ("clk", "rst"))))
-        self.crg = _Clocks(platform, clocks)
+        self.crg = Clocks(*clocks)
         SoCMini.__init__(self, platform, core["clock"] * 1e6, bus_standard=core["registers"], csr_paging=CSR_PAGING, with_ctrl=False,
                          bus_timeout=None)
         registers = AXILiteInterface(32, 32) if core["registers"] == "axi-lite" else \
