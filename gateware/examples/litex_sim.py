@@ -24,14 +24,14 @@ MODE = VideoMode(clk_freq=25e6, pixels=(320, 8, 8, 8), lines=(180, 2, 2, 2))
 
 
 class SimSoC(SoCCore):
-    def __init__(self):
+    def __init__(self, cpu_type=None, has_raymarcher=True, **options):
         host = wishbone.Interface(data_width=32, address_width=32, addressing="word")
         pins = [(name, 0, Pins(1)) for name in ("clk", "rst", "pix_clk", "pix_rst")]
         video = ("video", 0, *(Subsignal(name, Pins(bits)) for name, bits in VIDEO_LAYOUT))
         platform = GenericPlatform("", [*pins, video, *host.get_ios("registers")], name=NAME)
         self.crg = generate.Clocks(*((name, *map(platform.request, pins)) for name, pins in (
             ("sys", ("clk", "rst")), ("pix", ("pix_clk", "pix_rst")))))
-        SoCCore.__init__(self, platform, CLOCK, cpu_type=None, integrated_sram_size=0, with_uart=False, with_timer=False)
+        SoCCore.__init__(self, platform, CLOCK, cpu_type=cpu_type, with_uart=False, with_timer=False, **options)
         self.comb += host.connect_to_pads(platform.request("registers"), mode="slave")
         self.bus.add_master("host", host)
         module = MT41K64M16(CLOCK, "1:4")
@@ -43,8 +43,9 @@ class SimSoC(SoCCore):
 
         main_ram = self.bus.regions["main_ram"]
         self.scanout = Scanout(platform, port("read"), MODE)
-        self.triangle = TriangleEngine(platform, *memory_ports(port, main_ram), main_ram, MODE.sizes, fields=True)
-        self.raymarch = Raymarcher(platform, build("faces"), self.triangle)
+        self.triangle = TriangleEngine(platform, *memory_ports(port, main_ram), main_ram, MODE.sizes, fields=has_raymarcher)
+        if has_raymarcher:
+            self.raymarch = Raymarcher(platform, build("faces"), self.triangle)
         pads = platform.request("video")
         self.comb += [getattr(pads, name).eq(getattr(self.scanout.video, name)) for name, _ in VIDEO_LAYOUT]
 

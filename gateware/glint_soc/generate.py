@@ -161,12 +161,13 @@ class Core(SoCMini):
 
 
 def verilog(soc, name, **options):
-    """Returns the text of all modules of a finalized SoC, of which `name` is the top module."""
+    """Returns the files of a finalized SoC by name: NAME.sv with all modules, of which `name` is the top module, and initial contents of
+    memories."""
     soc.platform.finalize(soc)
     design = soc.platform.get_verilog(soc, name=name, **options)
-    if design.data_files:
-        raise ValueError(f"expected memories without initial contents, got {list(design.data_files)}")
-    return "\n".join([*(Path(path).read_text() for path, *_ in soc.platform.sources), _without_time(design.main_source)])
+    sources = dict.fromkeys(path for path, *_ in soc.platform.sources)
+    text = "\n".join([*(Path(path).read_text() for path in sources), _without_time(design.main_source)])
+    return {f"{name}.sv": text, **design.data_files}
 
 
 def _without_time(text):
@@ -183,8 +184,8 @@ def generate(core, folder):
     return write(soc, verilog(soc, core["name"]), core, video, folder)
 
 
-def write(soc, text, core, video, folder):
-    """Writes a SoC with the modules `text` to `folder`, with its exports and its test bench. Returns the names of the written files.
+def write(soc, design, core, video, folder):
+    """Writes a SoC with the files `design` to `folder`, with its exports and its test bench. Returns the names of the written files.
 
     `core` is a description, or what the test bench needs of it. A memory with the bus `host` is reached through the bus of the registers.
     """
@@ -197,9 +198,10 @@ def write(soc, text, core, video, folder):
     if video:
         stimulus += vectors.resolved(vectors.shown_frame(video, "triangle" in core["blocks"]), registers, origin)
     files = {
-        f"{core['name']}.sv": text,
+        **design,
         "csr.json": get_csr_json(soc.csr_regions, soc.constants, soc.mem_regions),
-        "csr.h": _without_time(get_csr_header(soc.csr_regions, soc.constants, soc.mem_map["csr"])),
+        # Without LiteX's headers, software has only the addresses and fields.
+        "csr.h": _without_time(get_csr_header(soc.csr_regions, soc.constants, with_access_functions=core["memory"]["bus"] == "host")),
         f"{core['name']}.core": _template("core.core.jinja", core=core),
         "testbench.cpp": _template("testbench.cpp.jinja", core=core, video=video),
         "stimulus.txt": "\n".join(stimulus) + "\n",

@@ -55,4 +55,5 @@ def simulate(folder, name):
     program = objects / "testbench"
     subprocess.run([compiler, "-pthread", *(str(objects / f"{source.stem}.o") for source in sources), "-latomic", "-o", str(program)],
                    check=True)
-    return subprocess.run([str(program.resolve()), str(folder / "stimulus.txt"), str(folder / "picture.ppm")], check=False).returncode
+    # The design reads the contents of its memories from this folder.
+    return subprocess.run([str(program.resolve())], cwd=folder, check=False).returncode

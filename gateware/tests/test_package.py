@@ -2,8 +2,10 @@
 simulated. Pictures equal those of the model."""
 
 import fcntl
+import json
 import os
 import random
+import re
 import shutil
 import subprocess
 import sys
@@ -63,7 +65,6 @@ def _run(*command, environment=None):
 @pytest.mark.parametrize(("name", "equal"), [
     ("scanout", ["a frame of 1280 x 720 pixels, shown in 1280 x 720"]),
     ("triangle", ["320 x 180 pixels"]),
-    ("raymarch", ["320 x 180 pixels", "320 x 180 pixels"]),
     ("triangle_wishbone", ["320 x 180 pixels", "a frame of 320 x 180 pixels, shown in 640 x 360"]),
 ])
 def test_core(installed, name, equal):
@@ -80,6 +81,13 @@ def test_litex_soc(installed):
     output = _run(sys.executable, _EXAMPLES / "litex_sim.py", _FOLDER / "litex_sim", environment=installed)
     assert output.count("equal: 320 x 180 pixels\n") == 2
     assert "equal: a frame of 320 x 180 pixels, shown in 320 x 180\n" in output
+    assert output.endswith("passed\n")
+
+
+def test_litex_program(installed):
+    """Draws a picture by a program in C on the processor of a LiteX SoC, which an interrupt tells the end."""
+    output = _run(sys.executable, _EXAMPLES / "litex_cpu.py", _FOLDER / "litex_cpu", environment=installed)
+    assert "equal: 320 x 180 pixels\n" in output
     assert output.endswith("passed\n")
 
 
@@ -107,16 +115,27 @@ def test_arty(installed, engines, modules, interrupts):
     assert output.splitlines()[-2:] == [modules, interrupts]
 
 
-def test_registers():
-    """Checks that the registers of a core are at the same places as in Glint's own SoC, so that its drivers fit."""
-    soc, full = generate.Core(generate.description(yaml.safe_load((_EXAMPLES / "raymarch.yml").read_text()))), packages.full_soc()
+def test_registers(tmp_path):
+    """Checks that the registers of a core are at the same places as in Glint's own SoC, so that its drivers fit, and that the exports
+    have these places."""
+    core, full = generate.description(yaml.safe_load((_EXAMPLES / "raymarch.yml").read_text())), packages.full_soc()
+    soc = generate.Core(core)
     soc.finalize()
+    generate.write(soc, {}, core, None, tmp_path)
     found, expected = vectors.registers(soc), vectors.registers(full)
     own = {"memory", "memory_errors"}
     base = full.mem_map["csr"]
     assert {name: base + place for name, place in found.items() if name not in own} == {
         name: place for name, place in expected.items() if name in found.keys() - own}
     assert {name for name in expected if name.startswith(("triangle", "raymarch"))} == found.keys() - own
+    registers = {name: place for name, place in found.items() if name not in ("memory", "triangle", "raymarch")}
+    exported = json.loads((tmp_path / "csr.json").read_text())["csr_registers"]
+    assert {name: register["addr"] for name, register in exported.items()} == registers
+    header = (tmp_path / "csr.h").read_text()
+    base = int(re.search(r"#define CSR_BASE (0x\w+)L", header)[1], 16)
+    places = {name.lower(): base + int(offset, 16)
+              for name, offset in re.findall(r"#define CSR_(\w+)_ADDR \(CSR_BASE \+ (0x\w+)L\)", header)}
+    assert places == registers
 
 
 @pytest.mark.parametrize("name", ["scanout", "triangle_wishbone"])
@@ -132,6 +151,7 @@ def test_read_by_yosys(tmp_path, name):
     "blocks: {scanout: {}, triangle: {smooth: true, lines: true}}",
     "blocks: {triangle: {texture: true, sky: true, fog: true, antialiasing: true}}",
     "memory: {bus: wishbone}, blocks: {scanout: {}}",
+    "blocks: {triangle: {}, raymarch: {fields: \"sponge\"}}",
 ])
 def test_options(tmp_path, rest):
     """Generates cores with other options, which Verilator reads; equal descriptions give equal files."""
