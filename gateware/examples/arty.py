@@ -23,8 +23,7 @@ _VGA = [("vga", 0,
 
 class PixelClock(LiteXModule):
     def __init__(self, clock, frequency):
-        self.cd_pix = ClockDomain()
-        self.pll = S7PLL(speedgrade=-1)
+        self.cd_pix, self.pll = ClockDomain("pix"), S7PLL(speedgrade=-1)
         self.pll.register_clkin(clock, 100e6)
         self.pll.create_clkout(self.cd_pix, frequency)
 
@@ -49,7 +48,8 @@ class GlintSoC(BaseSoC):
             self.irq.add(name)
         self.platform.add_extension(_VGA)
         pads, video = self.platform.request("vga"), self.scanout.video
-        self.comb += [pads.hsync.eq(~video.hsync), pads.vsync.eq(~video.vsync), *(getattr(pads, c).eq(getattr(video, c)[4:]) for c in "rgb")]
+        self.comb += [pads.hsync.eq(~video.hsync), pads.vsync.eq(~video.vsync)]
+        self.comb += [getattr(pads, colour).eq(getattr(video, colour)[4:]) for colour in "rgb"]
 
 
 if __name__ == "__main__":

@@ -43,7 +43,8 @@ if __name__ == "__main__":
         soc.irq.add(name)
     soc.finalize()
     soc.rom.mem.init = program(soc, folder)
-    core = {"name": NAME, "clock": CLOCK / 1e6, "registers": "wishbone", "memory": {"bus": "host", "origin": soc.mem_map["main_ram"]}, "blocks": {}}
+    core = {"name": NAME, "clock": CLOCK / 1e6, "registers": "wishbone", "memory": {"bus": "host", "origin": soc.mem_map["main_ram"]},
+            "blocks": {}}
     generate.write(soc, generate.verilog(soc, NAME, special_overrides=sim_special_overrides), core, None, folder)
     # The test bench waits for the program, and compares the picture in memory.
     picture = [line for line in vectors.CUBE.read_text().splitlines() if line.startswith(("picture", "runs"))]

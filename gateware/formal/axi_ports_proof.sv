@@ -134,8 +134,10 @@ module axi_ports_proof #(
 
         reads_pass:     assert (taken[1:0] == (ar ? 2'(1) << ar_id : '0) && (!ar || ar_addr == ORIGIN + 32'({kept[ar_id[0]], 1'b0})));
         writes_pass:    assert (taken[3:2] == (aw ? 2'(1) << aw_id : '0) && (!aw || aw_addr == ORIGIN + 32'({kept[2 + aw_id[0]], 1'b0})));
-        single_words:   assert (ar_len == '0 && aw_len == '0 && ar_size == 3'd1 && aw_size == 3'd1 && ar_burst == 2'd1 && aw_burst == 2'd1 && w_last);
-        word_follows:   assert (!w_valid || level != '0 && wdata_valid[order[0]] && w_data == wdata[order[0]] && w_strb == strobes[order[0]]);
+        single_words:   assert (ar_len == '0 && aw_len == '0 && ar_size == 3'd1 && aw_size == 3'd1 && ar_burst == 2'd1 && aw_burst == 2'd1
+                                && w_last);
+        word_follows:   assert (!w_valid || level != '0 && wdata_valid[order[0]] && w_data == wdata[order[0]]
+                                && w_strb == strobes[order[0]]);
         word_taken:     assert (wdata_ready == (w ? 2'(1) << order[0] : '0));
         answers_pass:   assert (rdata_valid == (r_valid ? 2'(1) << r_id : '0) && (!r_valid || rdata[r_id] == 16'(went[r_id])));
         answers_taken:  assert (r_ready && b_ready);

@@ -25,6 +25,8 @@ from migen import ClockDomain, log2_int
 
 from . import vectors
 from .axi_ports import AxiPorts
+from .gesture import IDENT as GESTURE, GestureEngine
+from .i2c import I2CMaster
 from .raymarch import Raymarcher, build
 from .register_map import CSR_MAP, CSR_PAGING
 from .scanout import VIDEO_LAYOUT, Scanout
@@ -32,6 +34,14 @@ from .simulate import simulate
 from .triangle import TriangleEngine, memory_ports
 from .video import CEA_640X480, CEA_1280X720
 from .wishbone_ports import WishbonePorts
+
+_WIRES = [(f"{wire}_{way}", 1) for wire in ("scl", "sda") for way in ("out", "in")]
+
+_PINS = {
+    "i2c": _WIRES,
+    "gesture": [*((name, 1) for name in ("pclk", "href", "vsync", "xclk", "reset_n", "power_down")), ("d", 8), *_WIRES],
+}
+"""Pins of blocks with a device. The wires of I2C are open drain: an output of 0 pulls the wire low, and an input is its state."""
 
 MODES = {"1280x720": CEA_1280X720, "640x480": CEA_640X480}
 """Video modes of the scan-out."""
@@ -47,6 +57,8 @@ _BLOCKS = {
     "scanout": {"mode": "1280x720"},
     "triangle": dict.fromkeys(("smooth", "texture", "sky", "fog", "antialiasing", "lines"), False),
     "raymarch": {"fields": "faces"},
+    "gesture": {"moments": False},
+    "i2c": {},
 }
 _CHOICES = {"registers": ("axi-lite", "wishbone"), "bus": ("axi", "wishbone"), "mode": tuple(MODES)}
 
@@ -107,12 +119,13 @@ class Clocks(LiteXModule):
 class Core(SoCMini):
     """The registers and the memory port of some engines, from a description as `description` returns it.
 
-    The ports are `clk` and `rst` of the domain `sys`, `registers_*`, `memory_*` and an interrupt of each block; with the scan-out also
-    `pix_clk`, `pix_rst` and `video_*`. The registers of a block have the same window as in Glint's own SoC.
+    The ports are `clk` and `rst` of the domain `sys`, `registers_*`, an interrupt of each block, and `memory_*` for blocks that use memory;
+    with the scan-out also `pix_clk`, `pix_rst` and `video_*`, and the pins of other blocks' devices. The registers of a block have the same
+    window as in Glint's own SoC.
     """
 
     mem_map = {"csr": 0}
-    csr_map = {name: CSR_MAP[name] for name in _BLOCKS} | {"memory": max(CSR_MAP[name] for name in _BLOCKS) + 3}
+    csr_map = {name: CSR_MAP[name] for name in _BLOCKS} | {"memory": 16}
 
     def __init__(self, core):
         platform = _Platform(core["name"])
@@ -144,10 +157,11 @@ class Core(SoCMini):
             options = dict(blocks["triangle"])
             readers, writers = memory_ports(port, region, texture=options["texture"], lines=options["lines"])
             sizes = MODES[blocks["scanout"]["mode"]].sizes if "scanout" in blocks else CEA_1280X720.sizes
-        is_axi = core["memory"]["bus"] == "axi"
-        self.memory = (AxiPorts if is_axi else WishbonePorts)(ports, region.origin)
-        bus = self.memory.axi if is_axi else self.memory.bus
-        self.comb += bus.connect_to_pads(platform.add(bus.get_ios("memory")), mode="master")
+        if ports:
+            is_axi = core["memory"]["bus"] == "axi"
+            self.memory = (AxiPorts if is_axi else WishbonePorts)(ports, region.origin)
+            bus = self.memory.axi if is_axi else self.memory.bus
+            self.comb += bus.connect_to_pads(platform.add(bus.get_ios("memory")), mode="master")
         if "triangle" in blocks:
             written = self.memory.pending
             self.triangle = TriangleEngine(
@@ -156,6 +170,11 @@ class Core(SoCMini):
                 pending=(written[0:2] != 0, written[2:4] != 0))
         if "raymarch" in blocks:
             self.raymarch = Raymarcher(platform, build(blocks["raymarch"]["fields"]), self.triangle)
+        pins = {name: platform.add([(name, 0, *(Subsignal(pin, Pins(bits)) for pin, bits in _PINS[name]))]) for name in _PINS if name in blocks}
+        if "gesture" in blocks:
+            self.gesture = GestureEngine(platform, pins["gesture"], self.sys_clk_freq, **blocks["gesture"])
+        if "i2c" in blocks:
+            self.i2c = I2CMaster(platform, pins["i2c"], self.sys_clk_freq)
         for name in blocks:
             self.comb += platform.add([(f"{name}_irq", 0, Pins(1))]).eq(getattr(self, name).ev.irq)
 
@@ -181,6 +200,8 @@ def generate(core, folder):
     soc = Core(core)
     soc.finalize()
     video = MODES[core["blocks"]["scanout"]["mode"]] if "scanout" in core["blocks"] else None
+    if not hasattr(soc, "memory"):
+        core = core | {"memory": {**core["memory"], "bus": "none"}}
     return write(soc, verilog(soc, core["name"]), core, video, folder)
 
 
@@ -197,6 +218,13 @@ def write(soc, design, core, video, folder):
         stimulus += vectors.resolved(vectors.CUBE.read_text(), registers, origin)
     if video:
         stimulus += vectors.resolved(vectors.shown_frame(video, "triangle" in core["blocks"]), registers, origin)
+    # Blocks without a picture: that they answer.
+    answers = {"gesture": f"expect gesture_ident ffffffff {GESTURE:x}", "i2c": "expect i2c_status 8 0"}
+    stimulus += [line for name, text in answers.items() if name in core["blocks"] for line in vectors.resolved(text, registers, origin)]
+    if core["memory"]["bus"] in ("axi", "wishbone"):
+        # The scan-out, which goes on reading, stops first.
+        stop = ["write scanout_control 0", "wait scanout_status 3"] if video else []
+        stimulus += vectors.resolved("\n".join([*stop, "errors memory_errors"]), registers, origin)
     files = {
         **design,
         "csr.json": get_csr_json(soc.csr_regions, soc.constants, soc.mem_regions),
@@ -228,11 +256,11 @@ def main():
     logging.disable(logging.INFO) # LiteX logs each step
     try:
         core = description(yaml.safe_load(arguments.description.read_text()))
+        folder = arguments.output or Path(core["name"])
+        for file in generate(core, folder):
+            print(folder / file)
     except (ValueError, yaml.YAMLError, OSError) as error:
         parser.error(f"{arguments.description}: {error}")
-    folder = arguments.output or Path(core["name"])
-    for file in generate(core, folder):
-        print(folder / file)
     return simulate(folder, core["name"]) if arguments.simulate else 0
 
 

@@ -8,6 +8,7 @@
     copy FROM TO                write of a register's value to another one
     wait REGISTER MASK          until these bits are 0
     expect REGISTER MASK VALUE  comparison of these bits
+    errors REGISTER             comparison with the number of errors that memory answered
     picture OFFSET WIDTH HEIGHT place of a picture, RGB565
     runs COUNT*COLOUR ...       the picture's pixels
     shown OFFSET WIDTH HEIGHT   comparison of the next shown frame with a picture in memory
@@ -29,7 +30,7 @@ SPONGE = CUBE.with_name("sponge.txt")
 _OFFSETS = {"memory": 1, "fill": 1, "address": 2, "picture": 1, "shown": 1}
 """For each command, the number of its argument that is an offset in memory."""
 
-_REGISTERS = {"write": (1,), "address": (1,), "copy": (1, 2), "wait": (1,), "expect": (1,)}
+_REGISTERS = {"write": (1,), "address": (1,), "copy": (1, 2), "wait": (1,), "expect": (1,), "errors": (1,)}
 """For each command, the numbers of its arguments that are registers."""
 
 
