@@ -2,10 +2,11 @@
 
 use core::time::Duration;
 
+use glint_core::feature::IMU;
 use glint_core::tasks::Turn;
 use glint_hal::timer::{Clock, Deadline};
 use glint_program::hardware::Devices;
-use glint_program::sensor;
+use glint_program::sensor::{self, Imu};
 use litex_pac::cpu;
 
 use crate::demo::Demo;
@@ -40,6 +41,7 @@ impl Indicators {
         devices: &mut Option<Devices>,
         demo: &Demo,
         picture: &Picture,
+        imu: &Imu,
         heartbeat: bool,
     ) -> Turn {
         if !self.beat.passed() {
@@ -49,14 +51,17 @@ impl Indicators {
         self.blinks = !self.blinks;
         // Polls the future that reads the sensor, so that a transfer whose interrupt is missing times out.
         sensor::advance(cpu::cycles_low());
+        let calibrated = imu.calibrated_eighths().filter(|_| IMU.is_built);
         if let Some(devices) = devices {
             if heartbeat {
-                devices.leds.set(panel::leds(demo, self.blinks));
+                devices.leds.set(panel::leds(demo, self.blinks, calibrated));
             }
             if devices.tests_digits.is_none_or(|end| end.passed()) {
                 let drawn = picture.drawn().and_then(Result::ok);
                 let rate = drawn.map(|drawn| drawn.rate(self.clock.frequency()));
-                devices.digits.show(panel::digits(demo, rate, self.blinks));
+                devices
+                    .digits
+                    .show(panel::digits(demo, rate, self.blinks, calibrated.is_some()));
             }
         }
         Turn::Again

@@ -310,7 +310,8 @@ impl MainLoop {
             terminal.listen();
             sensor::deliver(imu);
             poll_buttons(devices, keypad, *clock, scene, imu, demo);
-            self.indicators.poll(devices, demo, picture, *heartbeat);
+            self.indicators
+                .poll(devices, demo, picture, imu, *heartbeat);
         };
         if begins {
             models.update(scene, &mut progress);
@@ -428,6 +429,7 @@ impl MainLoop {
             &mut machine.devices,
             &machine.demo,
             &machine.picture,
+            &machine.imu,
             machine.heartbeat,
         );
         // The vertical blanking interrupt wakes the tasks that wait for a time. A SoC without scan-out does not have this interrupt.

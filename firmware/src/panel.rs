@@ -39,8 +39,11 @@ impl Switches {
     }
 }
 
-/// The levels of the LEDs. `blinks` is the level of LED 0.
-pub fn leds(demo: &Demo, blinks: bool) -> u16 {
+/// The first of the LEDs 8 to 15, a bar of the progress of a calibration.
+const PROGRESS: u32 = 8;
+
+/// The levels of the LEDs. `blinks` is the level of LED 0, and `calibrated` the done part of a calibration of the motion sensor in eighths.
+pub fn leds(demo: &Demo, blinks: bool, calibrated: Option<u32>) -> u16 {
     let mut leds = if blinks { BEAT } else { 0 };
     if let Some(number) = demo.turns.number() {
         // Four LEDs.
@@ -52,15 +55,20 @@ pub fn leds(demo: &Demo, blinks: bool) -> u16 {
     if demo.error().is_some() {
         leds |= ERROR;
     }
+    if let Some(eighths) = calibrated {
+        // The first LED of the bar is on from the start of the calibration.
+        leds |= ((2 << eighths) - 1) << PROGRESS;
+    }
     leds
 }
 
 /// Segments of the digits: frames per second at the left, and at the right the number of the demo's scene, alternating with the number of
-/// the last error.
-pub fn digits(demo: &Demo, rate: Option<u64>, shows_error: bool) -> [u8; 8] {
+/// the last error; during a calibration of the motion sensor `CAL`.
+pub fn digits(demo: &Demo, rate: Option<u64>, shows_error: bool, calibrates: bool) -> [u8; 8] {
     let left = rate.map(Display::number).unwrap_or_default();
     let number = demo.turns.number().map(|number| number as u64 + 1);
     let right = match (number, demo.error()) {
+        _ if calibrates => Display::of(format_args!("CAL")),
         (number, Some(error)) if shows_error || number.is_none() => Display::error(error),
         (Some(number), _) => Display::number(number),
         (None, _) => Display::default(),

@@ -34,7 +34,10 @@ pub const fn segments(character: char) -> u8 {
         '7' => const { lit("abc") },
         '8' => const { lit("abcdefg") },
         '9' => const { lit("abcdfg") },
+        'A' => const { lit("abcefg") },
+        'C' => const { lit("adef") },
         'E' => const { lit("adefg") },
+        'L' => const { lit("def") },
         '-' => const { lit("g") },
         _ => 0,
     }
@@ -110,11 +113,11 @@ mod tests {
     #[test]
     fn characters_look_like_themselves() {
         let picture = [
-            " _     _  _     _  _  _  _  _  _    ",
-            "| |  | _| _||_||_ |_   ||_||_||_  _ ",
-            "|_|  ||_  _|  | _||_|  ||_| _||_    ",
+            " _     _  _     _  _  _  _  _  _  _  _       ",
+            "| |  | _| _||_||_ |_   ||_||_||_||  |_ |   _ ",
+            "|_|  ||_  _|  | _||_|  ||_| _|| ||_ |_ |_    ",
         ];
-        for (place, character) in "0123456789E-".chars().enumerate() {
+        for (place, character) in "0123456789ACEL-".chars().enumerate() {
             let rows = picture.map(|row: &str| row[3 * place..3 * place + 3].to_owned());
             assert_eq!(drawn(character), rows, "{character}");
         }
@@ -122,7 +125,7 @@ mod tests {
 
     #[test]
     fn every_character_has_segments_of_its_own() {
-        let all: Vec<u8> = "0123456789E- ".chars().map(segments).collect();
+        let all: Vec<u8> = "0123456789ACEL- ".chars().map(segments).collect();
         for (place, segments) in all.iter().enumerate() {
             assert!(!all[..place].contains(segments));
             assert!(*segments < 0x80, "the point is dark");

@@ -167,6 +167,11 @@ pub enum Progress {
 }
 
 impl Calibration {
+    /// Number of samples that the calibration takes.
+    pub const fn wanted(&self) -> u32 {
+        self.wanted
+    }
+
     /// Starts a calibration. The number of samples is clamped to the range [`MOST_SAMPLES`].
     pub fn new(units: Units, samples: u32) -> Self {
         Self {

@@ -170,6 +170,15 @@ impl<E: Copy> Imu<E> {
         }
     }
 
+    /// The done part of the calibration in progress in eighths, 0 to 7; `None` without one.
+    pub const fn calibrated_eighths(&self) -> Option<u32> {
+        match &self.calibrating {
+            // At most 2^16 samples are wanted, and fewer are taken.
+            Calibrating::Going(calibration, samples) => Some(8 * *samples / calibration.wanted()),
+            Calibrating::Never | Calibrating::Ended(_) => None,
+        }
+    }
+
     /// Result of the last calibration; `None` before the end of a first calibration, and during a calibration.
     pub const fn calibration(&self) -> Option<Result<Report, CalibrationError<E>>> {
         match self.calibrating {

@@ -33,6 +33,7 @@ fn a_calibrated_sensor_at_rest_stays_where_it_is() {
     imu.calibrate(8_192);
     for index in 0..8_192 {
         assert_eq!(imu.calibrated_samples(), Some(index as u32));
+        assert!(imu.calibrated_eighths().is_some_and(|eighths| eighths < 8));
         imu.on_sample(index * 1_000, &rest(index));
     }
     let report = imu.calibration().expect("an end").expect("at rest");

@@ -3,6 +3,7 @@
 use crate::common::assert_has;
 use glint::board::{EmulatedBoard, built_firmware};
 use glint::board::{Simulation, Uart};
+use glint::imu::sensor;
 use glint_core::console::PROMPT;
 use glint_core::demo::TURN_MS;
 use glint_core::digits::Display;
@@ -165,6 +166,27 @@ fn switches_turn_the_overlay_on_and_give_the_buttons_to_the_scene() {
     press(&mut board, 0);
     let (number, answer) = turn(&mut board);
     assert!(number == 3 && answer.contains("demo on\r\n"), "{answer}");
+}
+
+#[test]
+fn a_calibration_shows_on_leds_and_digits() {
+    let mut board = started();
+    board.plug(sensor::virtual_sensor(None));
+    board.run(PANEL);
+    press(&mut board, 2);
+    board.run(PANEL);
+    assert_eq!(board.leds() >> 8, 1, "the first eighth");
+    assert_eq!(right(&board), Display::of(format_args!("CAL")).digits());
+    // The calibration takes 8,192 samples, one each millisecond.
+    board.run(4_000 * MS);
+    assert!(
+        [0xf, 0x1f].contains(&(board.leds() >> 8)),
+        "{:#x}",
+        board.leds()
+    );
+    board.run(5_000 * MS);
+    assert_eq!(board.leds() >> 8, 0);
+    assert_eq!(right(&board), [0; 4]);
 }
 
 #[test]
