@@ -8,9 +8,6 @@ use std::path::Path;
 
 /// Size in bytes of the largest main memory of the supported boards.
 const MEMORY: usize = 128 << 20;
-/// Number of bytes at the start of a file that decide whether it is a text.
-const START: usize = 256;
-
 /// Reads the file at `path`, or standard input: a flat binary, which is checked, or an ELF file, whose memory image is returned.
 ///
 /// # Errors
@@ -37,8 +34,7 @@ pub fn check(bytes: &[u8], path: &Path) -> Result<(), InputError> {
     let Some(first) = bytes.first_chunk::<4>() else {
         return error(flat, format!("a file of {} bytes", bytes.len()));
     };
-    let start = bytes.get(..START).unwrap_or(bytes);
-    if start.iter().all(|&byte| is_text(byte)) {
+    if image::is_text(bytes) {
         return error(flat, format!("the text {}", quote(first)));
     }
     if Image::new_checked(bytes).is_ok() {
@@ -49,10 +45,6 @@ pub fn check(bytes: &[u8], path: &Path) -> Result<(), InputError> {
         return error(flat, format!("the bytes {first:02x?}"));
     }
     Ok(())
-}
-
-const fn is_text(byte: u8) -> bool {
-    byte.is_ascii_graphic() || byte.is_ascii_whitespace()
 }
 
 #[cfg(test)]

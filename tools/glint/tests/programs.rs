@@ -290,6 +290,20 @@ fn elf_files_of_other_programs_are_refused() {
     fs::write(&path, &file).unwrap();
     let error = program::read(&path).unwrap_err().to_string();
     assert!(error.contains("without the symbol _windows_end"), "{error}");
+    // A segment far away from the program would make an image of gigabytes.
+    let mut file = elf("kernel");
+    let headers = u32::from_le_bytes(file[28..32].try_into().unwrap()) as usize;
+    let count = u16::from_le_bytes([file[44], file[45]]).into();
+    let mut starts = (0..count).map(|i| headers + 32 * i);
+    let load = starts.find(|&at| file[at] == 1 && file[at + 16..at + 20] != [0; 4]);
+    let load = load.unwrap();
+    file[load + 12..load + 16].copy_from_slice(&0xffff_0000_u32.to_le_bytes());
+    fs::write(&path, &file).unwrap();
+    let error = program::read(&path).unwrap_err().to_string();
+    assert!(
+        error.contains("outside of the program's part of main memory"),
+        "{error}"
+    );
     fs::write(&path, &file[..1000]).unwrap();
     let error = program::read(&path).unwrap_err().to_string();
     assert!(error.contains("an ELF file that is damaged"), "{error}");

@@ -54,7 +54,7 @@ impl Sent {
     /// A file violates its format, or a buffer is missing. The error is one line for the user.
     fn converted(self) -> Result<Request, String> {
         match &self.files[..] {
-            [FileHead { name, .. }] if image::may_be_program(&self.data) => {
+            [FileHead { name, .. }] if image::may_be_program(name, &self.data) => {
                 let image = image::of_file(&self.data);
                 let image = image.map_err(|found| {
                     format!("{name}: expected a program for Glint's boards, found {found}")

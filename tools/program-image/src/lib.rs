@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 use std::ops::Range;
+use std::path::Path;
 
 use litex_pac::BUILD_ID;
 use litex_pac::memories::{MAIN_RAM, SRAM};
@@ -82,11 +83,20 @@ pub fn is_flat(file: &[u8]) -> bool {
         .is_some_and(|first| OPCODES.contains(&(first[0] & 0x7f)))
 }
 
-/// Whether a file can be a program: an ELF file, or one that begins as a flat binary does.
+/// Whether a file begins as a text does.
 #[must_use]
-pub fn may_be_program(file: &[u8]) -> bool {
-    let is_text = file.iter().take(START).all(|byte| byte.is_ascii());
-    file.starts_with(&MAGIC) || is_flat(file) && !is_text
+pub fn is_text(file: &[u8]) -> bool {
+    let is_text = |byte: &u8| byte.is_ascii_graphic() || byte.is_ascii_whitespace();
+    file.iter().take(START).all(is_text)
+}
+
+/// Whether a file can be a program: an ELF file, or one that begins as a flat binary does and whose name ends in `.bin` or has no
+/// extension. The first bytes of a mesh can be an instruction, too, such as the `glTF` of a GLB file or the header of an STL file.
+#[must_use]
+pub fn may_be_program(name: &str, file: &[u8]) -> bool {
+    let extension = Path::new(name).extension();
+    let is_named = extension.is_none_or(|extension| extension.eq_ignore_ascii_case("bin"));
+    file.starts_with(&MAGIC) || is_named && is_flat(file) && !is_text(file)
 }
 
 /// Returns the memory image of a program, an ELF file or a flat binary, for the boards with 128 MB of main memory.
@@ -132,7 +142,8 @@ pub fn of_elf(elf: &[u8], main_ram: u64) -> Result<Vec<u8>, ImageError> {
         return Err(ImageError::Fast { found: fast, sram });
     }
 
-    let program_end = symbol("_sample_memory")?;
+    // The symbols are the file's, so only main memory bounds the image.
+    let program_end = symbol("_sample_memory")?.min(end);
     let mut image = Vec::new();
     for segment in file.elf_program_headers() {
         if segment.p_type(endian) != PT_LOAD {
@@ -140,7 +151,9 @@ pub fn of_elf(elf: &[u8], main_ram: u64) -> Result<Vec<u8>, ImageError> {
         }
         // `p_paddr` is the load address of a segment, which may differ from its address at run time.
         let address = u64::from(segment.p_paddr(endian));
-        let range = address..address + u64::from(segment.p_memsz(endian));
+        // A damaged file can have more bytes than its segment has memory.
+        let size = segment.p_memsz(endian).max(segment.p_filesz(endian));
+        let range = address..address + u64::from(size);
         let data = segment.data(endian, elf);
         let data = data.map_err(|()| ImageError::Segment(range.clone()))?;
         if range.start < base || program_end < range.end {
@@ -170,4 +183,28 @@ pub fn of_elf(elf: &[u8], main_ram: u64) -> Result<Vec<u8>, ImageError> {
 pub fn symbol(file: &ElfFile32<Endianness>, name: &str) -> Option<u64> {
     let found = file.symbols().find(|symbol| symbol.name() == Ok(name));
     found.map(|symbol| symbol.address())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn meshes_and_texts_are_no_programs() {
+        let stl = [&b"glint"[..], &[0; 75], &[12, 0, 0, 0], &[0x80; 600]].concat();
+        assert!(is_flat(&stl), "the header begins with an instruction");
+        assert!(!may_be_program("a.stl", &stl));
+        assert!(!may_be_program("a.glb", b"glTF\x02\0\0\0\xff\xff\xff\xff"));
+        assert!(!may_be_program("notes", b"grey walls\n"));
+        let program = [0xb7, 0, 0, 0x40, 0xff];
+        for (name, is_program) in [
+            ("a.bin", true),
+            ("hello", true),
+            ("A.BIN", true),
+            ("a.ply", false),
+        ] {
+            assert_eq!(may_be_program(name, &program), is_program, "{name}");
+        }
+        assert!(may_be_program("hello.old", b"\x7fELF"));
+    }
 }

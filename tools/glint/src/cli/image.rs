@@ -22,7 +22,7 @@ pub enum ImageCommand {
 /// Make an image from a firmware, scenes with their meshes, and optionally a bitstream.
 #[derive(Args)]
 pub struct MakeArguments {
-    /// Firmware, a flat binary that runs at the start of main memory: `cargo xtask firmware` makes it.
+    /// Firmware or another program: an ELF file, or a flat binary for the start of main memory. `cargo xtask firmware` makes the firmware.
     #[arg(long, value_name = "FILE")]
     firmware: PathBuf,
     /// Bitstream of the FPGA, .bit or raw [default: none; the flash keeps its bitstream].
