@@ -62,7 +62,8 @@ impl Program for Flight {
         if board.is_pressed(Button::Down) {
             self.speed = (self.speed - FASTER).max(Q32_32::ZERO);
         }
-        let seconds = Q32_32::from_num(board.step().as_micros() as u32) / 1_000_000;
+        // After a pause the flight continues where it was.
+        let seconds = Q32_32::from_num(board.step().as_micros().min(100_000) as u32) / 1_000_000;
         self.place += self.speed * seconds;
         if self.place > END {
             self.place -= END * 2;

@@ -74,11 +74,11 @@ pub struct Hand {
 ///
 /// fn update(board: &mut Board, lives: &mut u64) {
 ///     if board.is_pressed(Button::Up) {
-///         *lives -= 1;
+///         *lives = lives.saturating_sub(1);
 ///         board.log(format_args!("{lives} lives"));
 ///     }
 ///     board.show_number(*lives);
-///     board.leds = 1 << *lives;
+///     board.leds = (1 << (*lives).min(15)) - 1;
 /// }
 /// ```
 pub struct Board {
@@ -86,7 +86,7 @@ pub struct Board {
     pub leds: u16,
     /// Whether the image sensor is on, and looks for a [hand](Self::hand).
     pub watches_hand: bool,
-    /// The lit segments of the eight digits. `None` shows the pictures per second.
+    /// The lit segments of the eight digits. `None` shows the rate of drawing in pictures per second.
     pub digits: Option<[u8; 8]>,
     defaults: Defaults,
     shapes: Shapes,
@@ -149,7 +149,9 @@ impl Board {
     pub(crate) fn begin(&mut self, levels: Levels) {
         self.sample_buttons(levels.time, levels.buttons);
         self.switches = levels.switches;
-        self.step = levels.time.saturating_sub(self.time);
+        if self.pictures > 0 {
+            self.step = levels.time.saturating_sub(self.time);
+        }
         self.time = levels.time;
     }
 
@@ -202,8 +204,8 @@ impl Board {
         self.pictures
     }
 
-    /// The angle of a motion with this number of turns per second, at the time of the next picture. Rounded down to microseconds, so that
-    /// no errors add up.
+    /// The angle of a motion with this number of turns per second, at the time of the next picture. It is computed from the whole time, so
+    /// rounding errors do not add up.
     pub fn turns(&self, per_second: Q32_32) -> Turns {
         let microseconds = i128::try_from(self.time.as_micros()).unwrap_or_default();
         Turns((i128::from(per_second.to_bits()) * microseconds).div_euclid(1_000_000) as u32)
@@ -235,8 +237,8 @@ impl Board {
     }
 
     /// The hand; `None` while [`watches_hand`](Self::watches_hand) is false, or without an image sensor.
-    pub const fn hand(&self) -> Option<&Hand> {
-        self.hand.as_ref()
+    pub fn hand(&self) -> Option<&Hand> {
+        self.hand.as_ref().filter(|_| self.watches_hand)
     }
 
     /// Samples of the motion sensor since the previous picture, the oldest first; it sends 1,000 a second.
@@ -249,11 +251,14 @@ impl Board {
         &self.received
     }
 
-    /// Writes a line to the serial line, after the time. Text beyond 1,024 bytes per picture is dropped.
+    /// Writes a line to the serial line, after the time. A line beyond 1,024 bytes for a picture is dropped. The lines are sent after the
+    /// update, so a panic in the update loses them.
     pub fn log(&mut self, text: fmt::Arguments) {
         let [seconds, milliseconds] = [self.time.as_secs(), u64::from(self.time.subsec_millis())];
-        // Text that does not fit is dropped.
-        let _ = write!(self.log, "{seconds:5}.{milliseconds:03} {text}\r\n");
+        let before = self.log.len();
+        if write!(self.log, "{seconds:5}.{milliseconds:03} {text}\r\n").is_err() {
+            self.log.truncate(before);
+        }
     }
 
     /// Shows a whole number on the digits, right-aligned.

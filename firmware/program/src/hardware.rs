@@ -55,7 +55,7 @@ impl fmt::Display for StartError {
             Self::MainRam { needed, found } => write!(
                 f,
                 "main memory: this firmware expects at least {} MB, the board has {} MB; \
-                 build the firmware of this board with `cargo xtask firmware --board BOARD`",
+                 build the firmware of this board with `cargo xtask firmware --board BOARD`, or a program with GLINT_MAIN_RAM_MB=32",
                 needed >> 20,
                 found >> 20
             ),

@@ -47,7 +47,7 @@
 //! | [`core`], [`model`], [`scene`] | the crates whose types the interface uses |
 //! | [`host`] | the same program on a host |
 //!
-//! The other modules exist on the soft core only, and are for programs that need more than this interface: `hardware` starts the
+//! Most other modules exist on the soft core only, and are for programs that need more than this interface: `hardware` starts the
 //! machine, and `renderer` draws frames. The firmware with the console is such a program.
 #![cfg_attr(target_arch = "riscv32", no_std)]
 #![deny(unsafe_code)]

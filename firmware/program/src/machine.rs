@@ -14,7 +14,7 @@ use glint_hal::timer::Clock;
 
 use crate::board::{Board, Hand, Levels, Motion, digits};
 use crate::canvas::{Canvas, Pixels};
-use crate::drawn::{Drawn, RenderedBy};
+use crate::drawn::Drawn;
 use crate::gesture::Gesture;
 use crate::hardware::{Devices, Hardware};
 use crate::interrupts;
@@ -61,6 +61,7 @@ pub fn run<P: Program>() -> ! {
         gesture,
         imu: Imu::default(),
         clock,
+        start: clock.cycles(),
     };
     let bus = inputs.devices.i2c.take();
     let stream = pin!(async move {
@@ -75,6 +76,7 @@ pub fn run<P: Program>() -> ! {
         sensor::start(stream);
     }
     let mut board = Board::new(renderer.defaults(), shapes);
+    supervision::on_picture();
     let mut program = P::start(&mut board);
     let mut notes = Notes::default();
     let mut rate = 0;
@@ -104,9 +106,17 @@ struct Inputs {
     gesture: Option<Gesture>,
     imu: Imu,
     clock: Clock,
+    /// Clock cycles since reset at the start of the program.
+    start: u64,
 }
 
 impl Inputs {
+    /// Time since the start of the program.
+    fn time(&self) -> Duration {
+        let cycles = self.clock.cycles().saturating_sub(self.start);
+        Duration::from_micros(self.clock.frequency().microseconds(cycles))
+    }
+
     /// Reads the input for the next picture.
     fn read(&mut self, board: &mut Board) {
         self.switch_image_sensor(board.watches_hand);
@@ -118,13 +128,14 @@ impl Inputs {
             let _ = received.push(byte[0]);
         }
         board.begin(Levels {
-            time: time(self.clock),
+            time: self.time(),
             buttons: self.devices.buttons.read(),
             switches: self.devices.switches.read(),
         });
     }
 
-    /// Turns the image sensor on or off, if the program has changed its wish. A sensor that does not answer is looked for again.
+    /// Turns the image sensor on or off, if the program has changed its wish. A sensor that does not answer at first is looked for again
+    /// only after the program has turned it off; one that is unplugged later is found again.
     fn switch_image_sensor(&mut self, is_on: bool) {
         let Some(gesture) = self.gesture.as_mut().filter(|_| GESTURE.is_built) else {
             return;
@@ -143,7 +154,7 @@ impl Inputs {
     fn poll(&mut self, board: &mut Board) {
         // Drawing by the soft core, which calls this function, may take long.
         supervision::on_picture();
-        board.sample_buttons(time(self.clock), self.devices.buttons.read());
+        board.sample_buttons(self.time(), self.devices.buttons.read());
         if IMU.is_built {
             sensor::deliver_each(&mut self.imu, &mut |imu| {
                 if let Some(sample) = imu.latest() {
@@ -165,10 +176,6 @@ impl Inputs {
             }));
         }
     }
-}
-
-fn time(clock: Clock) -> Duration {
-    Duration::from_micros(clock.frequency().microseconds(clock.cycles()))
 }
 
 /// Shows the output of the program. `rate` is the number of pictures a second.
@@ -197,7 +204,10 @@ fn draw<P: Program>(
             Some(drawn) => break drawn?,
             None => {
                 inputs.poll(board);
-                interrupts::sleep(before);
+                // Between two parts of the projection of lines the engine is idle, so no interrupt comes.
+                if !renderer.is_ready() {
+                    interrupts::sleep(before);
+                }
             }
         }
     };
@@ -243,19 +253,17 @@ impl core::fmt::Display for Error {
 /// Notes on pictures for the user.
 #[derive(Default)]
 struct Notes {
-    /// Whether the soft core drew the last picture.
-    by_soft_core: bool,
+    /// Whether the note was printed.
+    is_noted: bool,
 }
 
 impl Notes {
     /// Prints a note on the first picture that the soft core draws in place of the gateware.
     fn take(&mut self, drawn: &Drawn, clock: Clock) {
-        let fallback = drawn.fallback();
-        let by_soft_core = matches!(drawn.by, RenderedBy::Cpu(_));
-        if let (Some(reason), false) = (fallback, self.by_soft_core) {
+        if let (Some(reason), false) = (drawn.fallback(), self.is_noted) {
             let mut uart = UART.writer(clock, SEND_TIMEOUT);
             let _ = write!(uart, "note: drawn by the soft core: {reason}\r\n");
+            self.is_noted = true;
         }
-        self.by_soft_core = by_soft_core;
     }
 }

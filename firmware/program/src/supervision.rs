@@ -9,8 +9,8 @@ use crate::panic;
 
 /// Vertical blankings without a picture after which a program counts as looping: ten seconds.
 const LONGEST: u32 = 600;
-/// Bytes of the stack that a program may use. The stack has 6 MB more. Between two vertical blankings the soft core cannot write so
-/// much, so a recursion is found before it overwrites the variables; large arrays that are never written can escape.
+/// Most bytes of the stack that a program may use; where the program leaves less than twice as much, half of that. A recursion must fill the
+/// rest between two vertical blankings to escape; so can large arrays that are never written.
 const STACK: usize = 1 << 20;
 
 /// Vertical blankings since the last picture, from 1; 0 before supervision starts.
@@ -18,6 +18,7 @@ static BLANKINGS: AtomicU32 = AtomicU32::new(0);
 
 unsafe extern "C" {
     static _stack_start: u8;
+    static __ebss: u8;
 }
 
 /// Starts the supervision, or continues it for the next picture.
@@ -34,13 +35,15 @@ pub fn on_blanking() {
     // Only interrupts and `on_picture` write this number, and an interrupt is not interrupted.
     BLANKINGS.store(blankings + 1, Ordering::Relaxed);
     let here = 0_u8;
-    let used = (&raw const _stack_start).addr() - (&raw const here).addr();
-    if used > STACK {
+    let top = (&raw const _stack_start).addr();
+    let used = top - (&raw const here).addr();
+    let most = ((top - (&raw const __ebss).addr()) / 2).min(STACK);
+    if used > most {
         BLANKINGS.store(0, Ordering::Relaxed);
         panic::report(format_args!(
             "stack overflow: {} KB are in use, expected at most {} KB; an endless recursion? at {:#010x}",
             used >> 10,
-            STACK >> 10,
+            most >> 10,
             mepc::read()
         ));
     }

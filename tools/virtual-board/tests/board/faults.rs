@@ -47,7 +47,7 @@ fn firmware_for_more_memory_than_the_board_has_is_refused() {
         .read_until("press Enter to restart\r\n", LIMIT)
         .expect("a message that refuses to start");
     let refusal = "\r\ncannot start: main memory: this firmware expects at least 256 MB, the board has 128 MB; build the firmware of \
-                   this board with `cargo xtask firmware --board BOARD`\r\n";
+                   this board with `cargo xtask firmware --board BOARD`, or a program with GLINT_MAIN_RAM_MB=32\r\n";
     assert!(said.contains(refusal), "{said}");
 }
 
