@@ -33,7 +33,7 @@ const FIRST_PATIENCE_MS: u64 = 1_000;
 
 /// Note on a program without a prompt.
 const NO_PROMPT: &str =
-    "The program has no prompt: scenes, meshes and fields are those of the firmware.";
+    "The program has no prompt, so the page has no lists of scenes, meshes and fields for it.";
 
 /// Interval in ms of the board's time between two pictures of a moving field.
 const FRAME_MS: u64 = 40;
@@ -111,6 +111,14 @@ pub fn run(
     }
 }
 
+/// The wait for the first prompt of a program that has just started.
+struct Meeting {
+    /// End of the wait, in ms of the board's time.
+    end_ms: u64,
+    /// Text for the pages; empty for the first program.
+    started: String,
+}
+
 /// The session with a board; the board runs during the session's steps.
 pub struct Session<'a> {
     board: Watched<'a>,
@@ -136,6 +144,8 @@ pub struct Session<'a> {
     /// Whether a prompt has been received. The session sends no commands of its own to a program
     /// without a prompt.
     has_prompt: bool,
+    /// The wait for the first prompt of a program that has just started.
+    meeting: Option<Meeting>,
     /// The last bytes of the console's output; empty after the session's own commands, because
     /// their replies end with the prompt.
     end: Vec<u8>,
@@ -172,32 +182,47 @@ impl<'a> Session<'a> {
             up: Axis::Z,
             uploads: 0,
             has_prompt: false,
+            meeting: None,
             end: Vec::new(),
         };
-        if !session.meet()? {
-            session.hub.notify(NO_PROMPT, false);
-        }
+        session.meet(String::new())?;
         Ok(session)
     }
 
-    /// Finds out whether the running program has a prompt, and sends its lists. A simulated board has just started; nothing is sent to its
-    /// program, which may be one without a prompt.
-    fn meet(&mut self) -> Result<bool, BoardError> {
+    /// Begins to find out whether the running program has a prompt. A simulated board has just started; nothing is sent to its program,
+    /// which may be one without a prompt. `started` is the text for the pages, empty for the first program.
+    fn meet(&mut self, started: String) -> Result<(), BoardError> {
         self.has_prompt = false;
         if self.board.memory().is_some() {
-            let end = self.board.now_ms() + FIRST_PATIENCE_MS;
-            while !self.has_prompt && self.board.now_ms() < end {
-                let mut output = Vec::new();
-                self.board.read(&mut output, POLL_MS)?;
-                self.pass(&mut output)?;
-            }
-        } else {
-            self.has_prompt = self.try_ask(|console, _| Ok(console.synchronise()?))?;
+            let end_ms = self.board.now_ms() + FIRST_PATIENCE_MS;
+            self.meeting = Some(Meeting { end_ms, started });
+            return Ok(());
         }
+        self.has_prompt = self.try_ask(|console, _| Ok(console.synchronise()?))?;
         if self.has_prompt {
             self.update_lists()?;
         }
-        Ok(self.has_prompt)
+        Ok(())
+    }
+
+    /// Ends the wait for the first prompt, if it has come or is overdue.
+    fn end_meeting(&mut self) -> Result<(), BoardError> {
+        let now = self.board.now_ms();
+        let Some(meeting) =
+            (self.meeting).take_if(|meeting| self.has_prompt || now >= meeting.end_ms)
+        else {
+            return Ok(());
+        };
+        let mut text = meeting.started;
+        if self.has_prompt {
+            self.update_lists()?;
+        } else {
+            text = format!("{text} {NO_PROMPT}");
+        }
+        if !text.is_empty() {
+            self.hub.notify(text.trim_start(), false);
+        }
+        Ok(())
     }
 
     /// Starts a program in place of the running one. The pages get its lists, which are empty for a program without a prompt.
@@ -213,11 +238,7 @@ impl<'a> Session<'a> {
         self.end.clear();
         self.send_lists(Vec::new(), Choices::default());
         let size = image.len();
-        let has_prompt = self.meet()?;
-        let note = if has_prompt { "" } else { NO_PROMPT };
-        let text = format!("{name} runs, {size} bytes. {note}");
-        self.hub.notify(text.trim_end(), false);
-        Ok(())
+        self.meet(format!("{name} runs, {size} bytes."))
     }
 
     /// Time by which the board is ahead of its clock, for a clock that cannot wait.
@@ -233,6 +254,7 @@ impl<'a> Session<'a> {
         let mut output = Vec::new();
         self.board.read(&mut output, POLL_MS)?;
         self.pass(&mut output)?;
+        self.end_meeting()?;
         if !self.is_idle() {
             return match self.receive()? {
                 // The user's keys go to the running program, as on a terminal.
@@ -408,7 +430,9 @@ impl<'a> Session<'a> {
 
     fn type_line(&mut self, line: &str) -> Result<(), BoardError> {
         self.end = line.into();
-        self.board.write(format!("\0{line}\r").as_bytes())
+        // The firmware's line editor drops what was typed before this byte.
+        let clear = if self.has_prompt { "\0" } else { "" };
+        self.board.write(format!("{clear}{line}\r").as_bytes())
     }
 
     /// Runs a task on the console up to the next prompt. The viewers do not receive the output.

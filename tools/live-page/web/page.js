@@ -89,7 +89,7 @@ function choice(name, choose) {
 // Offers the programs beside the page, if it has any.
 async function showPrograms() {
   const response = await fetch("programs.json").catch(() => undefined);
-  const programs = response?.ok ? await response.json() : [];
+  const programs = response?.ok ? await response.json().catch(() => []) : [];
   for (const part of [element("programs"), element("programs-title")]) part.hidden = programs.length === 0;
   element("programs").replaceChildren(...programs.map(({ name, file }) => choice(name, () => fetchFile(file))));
 }

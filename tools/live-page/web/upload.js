@@ -74,7 +74,7 @@ export function startUpload(send, sendBytes, notify) {
 
   async function upload(entries) {
     if (entries.length === 0) return;
-    if (document.body.dataset.holder !== "you") return notify("Take control to upload a model.");
+    if (document.body.dataset.holder !== "you") return notify("Take control to upload a model or a program.");
     notify("");
     const contents = [];
     let heads;
@@ -120,9 +120,13 @@ export function startUpload(send, sendBytes, notify) {
   }
   // Uploads a file of the page's own folder.
   const fetchFile = async (name) => {
-    const response = await fetch(name);
-    if (!response.ok) return notify(`${name}: expected a file beside the page, found status ${response.status}`);
-    await upload([new File([await response.blob()], name)]);
+    try {
+      const response = await fetch(name);
+      if (!response.ok) return notify(`${name}: expected a file beside the page, found status ${response.status}`);
+      await upload([new File([await response.blob()], name)]);
+    } catch ({ message }) {
+      notify(`${name}: expected a file beside the page: ${message}`);
+    }
   };
   return { show, fetchFile };
 }
