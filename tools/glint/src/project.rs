@@ -11,6 +11,9 @@ use std::process::Command;
 /// The package of the library of programs, in a clone of Glint.
 const LIBRARY: &str = "firmware/program";
 
+/// Names of cargo's own folders, which no program may have.
+const RESERVED: [&str; 4] = ["build", "deps", "examples", "incremental"];
+
 /// Files of a project and their templates.
 const FILES: [(&str, &str); 5] = [
     (
@@ -37,7 +40,7 @@ const FILES: [(&str, &str); 5] = [
 pub enum ProjectError {
     /// The name is no name of a package.
     #[error(
-        "the name {0:?}: expected letters a to z, digits, - and _, beginning with a letter, as in the names of packages"
+        "the name {0:?}: expected letters a to z, digits, - and _, beginning with a letter, and none of cargo's own names"
     )]
     Name(String),
     /// A file or folder of this name exists.
@@ -79,7 +82,7 @@ impl Source {
     /// # Errors
     /// The path is not that of a clone.
     pub fn stated(text: &str) -> Result<Self, ProjectError> {
-        if text.contains("://") || text.starts_with("git@") {
+        if text.contains("://") {
             return Ok(Self::Git(text.to_owned()));
         }
         let path = PathBuf::from(text);
@@ -181,8 +184,9 @@ pub fn write(path: &Path, source: &Source) -> Result<(), ProjectError> {
     {
         put(&folder.path().join("Cargo.lock"), &lock)?;
     }
-    let folder = folder.keep();
-    fs::rename(&folder, path).map_err(failed(path))?;
+    fs::rename(folder.path(), path).map_err(failed(path))?;
+    // The folder has moved, so there is nothing to remove.
+    let _ = folder.keep();
     open(path).map_err(failed(path))
 }
 
@@ -204,7 +208,8 @@ fn put(path: &Path, bytes: &[u8]) -> Result<(), ProjectError> {
 /// Whether cargo accepts this name of a package.
 fn is_name(name: &str) -> bool {
     let is_part = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-' || c == '_';
-    name.starts_with(|c: char| c.is_ascii_lowercase()) && name.chars().all(is_part)
+    let is_made_of_parts = name.chars().all(is_part) && !RESERVED.contains(&name);
+    name.starts_with(|c: char| c.is_ascii_lowercase()) && is_made_of_parts
 }
 
 /// The compiler's target for this computer.
@@ -238,7 +243,7 @@ mod tests {
         for name in ["hello", "a1", "star-fighter", "x_2"] {
             assert!(is_name(name), "{name}");
         }
-        for name in ["", "1up", "Hello", "a b", "é", "-a", "a/b"] {
+        for name in ["", "1up", "Hello", "a b", "é", "-a", "a/b", "deps"] {
             assert!(!is_name(name), "{name}");
         }
     }

@@ -11,7 +11,7 @@ use glint::board::{self, AnyBoard, BoardName, SerialBoard};
 use glint::console::BIOS_PROMPT;
 use glint::error::quote;
 use glint::formats::read_up_to;
-use glint::web::Server;
+use glint::web::{Server, Watched};
 use glint_board_api::pace::SystemClock;
 use glint_core::console::PROMPT;
 use glint_live_page::{Live, LiveSimulation};
@@ -85,6 +85,8 @@ impl BoardArguments {
     /// Serves the live page.
     fn serve(&self, address: SocketAddr) -> anyhow::Result<()> {
         let ready = self.ready()?;
+        let watched = self.line.firmware.clone().filter(|_| self.watch);
+        let watched = watched.map(Watched::new);
         let server = Server::bind(address).with_context(|| format!("--web {address}"))?;
         let mut board: Box<dyn Live> = match &self.board {
             BoardName::Serial(port) => Box::new(self.line.serial_board(port)?),
@@ -107,7 +109,6 @@ impl BoardArguments {
             note("on other devices, replace the host in this address by this machine's address");
         }
         let _ready = ready.map(|ready| ready.write(&url)).transpose()?;
-        let watched = self.line.firmware.clone().filter(|_| self.watch);
         Ok(server.run(&mut *board, &self.board.to_string(), watched, &stop)?)
     }
 

@@ -16,3 +16,4 @@ pub mod server;
 mod watch;
 
 pub use server::Server;
+pub use watch::Watched;

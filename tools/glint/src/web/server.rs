@@ -1,7 +1,7 @@
 //! Listens for browsers, checks their requests, and serves the files of the page.
 
 use super::connection::{self, PATIENCE};
-use super::watch::watch;
+use super::watch::Watched;
 use crate::board::BoardError;
 use glint_live_page::files::{FILES, File, SCRIPT};
 use glint_live_page::hub::MAX_VIEWERS;
@@ -9,7 +9,6 @@ use glint_live_page::{Channels, Live, session};
 use std::collections::VecDeque;
 use std::io::{self, Read, Write};
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, Shutdown, SocketAddr, TcpListener, TcpStream};
-use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -122,8 +121,8 @@ impl Server {
         Ok(format!("http://{address}/{}/", self.token))
     }
 
-    /// Serves the page of the board `name`, whose firmware is running, until `stop` is set. Whenever the program in the file `watched`
-    /// changes, the board starts it.
+    /// Serves the page of the board `name`, whose firmware is running, until `stop` is set. Whenever the file `watched` changes, the board
+    /// starts its program.
     ///
     /// # Errors
     /// The line to the board has failed.
@@ -131,7 +130,7 @@ impl Server {
         self,
         board: &mut dyn Live,
         name: &str,
-        watched: Option<PathBuf>,
+        watched: Option<Watched>,
         stop: &AtomicBool,
     ) -> Result<(), BoardError> {
         let (channels, requests) = Channels::new(board, name, true);
@@ -150,10 +149,10 @@ impl Server {
                 accept(stream, &served);
             }
         });
-        if let Some(path) = watched {
+        if let Some(watched) = watched {
             let shared = Arc::clone(&shared);
             // This thread ends with the program, too.
-            std::thread::spawn(move || watch(&path, &shared.channels));
+            std::thread::spawn(move || watched.watch(&shared.channels));
         }
         session::run(board, &shared.channels, requests, stop)
     }
