@@ -39,6 +39,17 @@ pub enum Button {
 }
 
 /// The attitude of the motion sensor.
+///
+/// ```
+/// use glint_program::core::camera::View;
+/// use glint_program::core::fixed::Q32_32;
+/// use glint_program::Board;
+///
+/// /// The camera at the origin that looks where the sensor does; `None` without a sensor.
+/// fn look(board: &Board) -> Option<View> {
+///     board.motion()?.view([Q32_32::ZERO; 3]).ok()
+/// }
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Motion {
     /// The rotation from the sensor's axes to the world's.
@@ -58,6 +69,20 @@ impl Motion {
 }
 
 /// A hand in front of the image sensor.
+///
+/// ```
+/// use glint_program::core::camera::View;
+/// use glint_program::{Board, Hand};
+///
+/// /// The camera to which a hand has moved; `None` without a hand.
+/// fn steer(board: &mut Board) -> Option<View> {
+///     board.watches_hand = true;
+///     match board.hand()? {
+///         Hand { pose, is_seen: true } => View::spherical(pose.r, pose.theta, pose.phi).ok(),
+///         _ => None,
+///     }
+/// }
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Hand {
     /// The place on a sphere about the origin to which the hand has moved the camera: left and right are the azimuth, up and down the angle

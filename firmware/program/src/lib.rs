@@ -109,6 +109,13 @@ pub use picture::{MAX_RECTANGLES, Picture, PictureError};
 pub use program::Program;
 
 /// Clock cycles of the soft core since reset, to measure a program's own code; on a host always 0.
+///
+/// ```
+/// let start = glint_program::cycles();
+/// let root = std::hint::black_box(1_000_000_u32).isqrt();
+/// let taken = glint_program::cycles() - start;
+/// # let _ = (root, taken);
+/// ```
 #[must_use]
 pub fn cycles() -> u64 {
     #[cfg(target_arch = "riscv32")]

@@ -90,6 +90,27 @@ enum Main<'p> {
 
 /// The description of a picture: camera and light, then what is seen. A new picture has the board's largest size, four samples a pixel
 /// where the gateware draws them, white light at the camera, and behind meshes a grey gradient.
+///
+/// ```
+/// use glint_program::core::fixed::{Q8_24, Q32_32, Turns, U4_28};
+/// use glint_program::core::light::Background;
+/// use glint_program::core::matrix::{Axis, Matrix};
+/// use glint_program::core::camera::View;
+/// use glint_program::core::mesh::Mesh;
+/// use glint_program::{Picture, PictureError};
+///
+/// /// Two copies of a mesh in fog, one of them turned and twice as large.
+/// fn draw<'p>(mesh: Mesh<'p>, picture: &mut Picture<'p>) -> Result<(), PictureError> {
+///     picture.view = View::spherical(Q32_32::lit("4"), Turns(0), Turns::QUARTER)?;
+///     picture.appearance.background = Some(Background::Sky);
+///     picture.appearance.fog = U4_28::lit("0.2");
+///     let right = Matrix::translation([Q8_24::ZERO, Q8_24::lit("1.2"), Q8_24::ZERO])?;
+///     picture.mesh(mesh, right)?;
+///     let large = Matrix::scale([Q8_24::lit("2"); 3])?;
+///     picture.mesh(mesh, large.turned(Axis::Z, Turns::from_degrees(Q32_32::lit("30")))?)?;
+///     Ok(())
+/// }
+/// ```
 pub struct Picture<'p> {
     /// The camera. Lines have their own.
     pub view: View,
@@ -145,6 +166,17 @@ impl<'p> Picture<'p> {
 
     /// Shows a distance field, with rays of this precision.
     ///
+    /// ```
+    /// use glint_program::core::field::Field;
+    /// use glint_program::core::quality::Quality;
+    /// use glint_program::{Picture, PictureError};
+    ///
+    /// fn draw<'p>(sponge: &'p Field, picture: &mut Picture<'p>) -> Result<(), PictureError> {
+    ///     picture.field(sponge, Quality::Balanced)
+    /// }
+    /// assert!(Field::parse("menger:3").is_ok());
+    /// ```
+    ///
     /// # Errors
     /// [`PictureError::Subjects`] if the picture shows lines or edges.
     pub fn field(&mut self, field: &'p Field, quality: Quality) -> Result<(), PictureError> {
@@ -180,6 +212,16 @@ impl<'p> Picture<'p> {
 
     /// Adds a rectangle with a texture, in front of everything else: a sprite, or a character of a
     /// [font](glint_core::font::Font).
+    ///
+    /// ```
+    /// use glint_program::core::colour::Rgb565;
+    /// use glint_program::core::font::Font;
+    /// use glint_program::{Picture, PictureError};
+    ///
+    /// fn draw<'p>(font: &Font<'p>, picture: &mut Picture<'p>) -> Result<(), PictureError> {
+    ///     font.line("ready", [16, 16], 2, Rgb565::WHITE).try_for_each(|character| picture.rectangle(character))
+    /// }
+    /// ```
     ///
     /// # Errors
     /// [`PictureError::Rectangles`] for too many rectangles.
