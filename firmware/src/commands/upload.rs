@@ -66,6 +66,11 @@ pub fn finish(machine: &mut Machine, transfer: &mut Transfer) -> CommandResult<'
             let accepted = machine.models.accept_program(memory);
             accepted.map_err(CommandError::Program)?;
             machine.scene.show_wireframe();
+            let ignored = machine.models.program().ignored();
+            if ignored > 0 {
+                let text = format_args!("note: {ignored} bytes after the end are ignored\n");
+                machine.terminal.print(text);
+            }
             Reply::Done
         }
         Purpose::Log => replay::begin(machine, memory)?,

@@ -6,7 +6,7 @@ use crate::error::{FormatError, InputError, Location, quote};
 use crate::formats::{STDIN, read_file};
 use crate::polygons::Polygons;
 use glint_core::fixed::Q5_11;
-use glint_core::wireframe::text::assemble;
+use glint_core::wireframe::text::{assemble, lines_after_end};
 use glint_core::wireframe::{
     self, Instruction, Key, MAX_SEGMENTS, Motion, Point, Pose, Program, ProgramError, Segment,
     Viewing, Window, accumulate, unique_edges,
@@ -54,11 +54,20 @@ impl Form {
     }
 }
 
-/// Reads a program in either form, and returns its binary form. `-` is standard input, whose form is detected from its contents.
+/// A program that was read.
+#[derive(Debug)]
+pub struct Source {
+    /// The binary form, up to the end of the program.
+    pub bytes: Vec<u8>,
+    /// What follows the end and is ignored, for a warning; `None` if nothing does.
+    pub ignored: Option<String>,
+}
+
+/// Reads a program in either form. `-` is standard input, whose form is detected from its contents.
 ///
 /// # Errors
 /// The file cannot be read, or violates its format.
-pub fn read(path: &Path) -> Result<Vec<u8>, InputError> {
+pub fn read(path: &Path) -> Result<Source, InputError> {
     let (form, bytes) = match path == Path::new(STDIN) {
         true => {
             let bytes = read_file(path)?;
@@ -75,20 +84,30 @@ pub fn read(path: &Path) -> Result<Vec<u8>, InputError> {
     parse(form, bytes).map_err(|error| error.in_path(path))
 }
 
-/// Parses a program in either form, and returns its binary form.
+/// Parses a program in either form.
 ///
 /// # Errors
 /// The first violation of the format, with its line or word.
-pub fn parse(form: Form, bytes: Vec<u8>) -> Result<Vec<u8>, FormatError> {
+pub fn parse(form: Form, mut bytes: Vec<u8>) -> Result<Source, FormatError> {
+    let (count, unit);
     match form {
         Form::Text => {
-            assemble(&String::from_utf8_lossy(&bytes)).map_err(|error| format_error(&error))
+            let text = String::from_utf8_lossy(&bytes);
+            let assembled = assemble(&text).map_err(|error| format_error(&error))?;
+            (count, unit) = (lines_after_end(&text), "line");
+            bytes = assembled;
         }
         Form::Binary => {
-            check(&bytes)?;
-            Ok(bytes)
+            (count, unit) = (check(&bytes)?.ignored(), "byte");
+            bytes.truncate(bytes.len() - count);
         }
     }
+    let ignored = match count {
+        0 => None,
+        1 => Some(format!("1 {unit} after the end is ignored")),
+        _ => Some(format!("{count} {unit}s after the end are ignored")),
+    };
+    Ok(Source { bytes, ignored })
 }
 
 /// Checks the binary form of a program.

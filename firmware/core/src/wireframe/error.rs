@@ -67,8 +67,6 @@ pub enum Expected {
     WholeWord,
     /// The end of the program.
     End,
-    /// The end of the program; nothing may follow it.
-    NothingAfterEnd,
     /// Exactly one instruction of this kind.
     One(Opcode),
     /// A z of the eye of at least 0.
@@ -165,7 +163,6 @@ impl fmt::Display for Expected {
             }
             Self::WholeWord => write!(f, "a word of {WORD_BYTES} bytes"),
             Self::End => f.write_str("end"),
-            Self::NothingAfterEnd => f.write_str("nothing after end"),
             Self::One(opcode) => write!(f, "one {opcode} in the program"),
             Self::EyeNotNegative => f.write_str("a z of the eye of at least 0"),
             Self::EyeAbove { plane } => {

@@ -118,10 +118,12 @@ pub struct Program<'a> {
     viewing: Viewing,
     segments: u32,
     words: &'a [[u8; WORD_BYTES]],
+    /// Number of bytes after the end.
+    ignored: usize,
 }
 
 impl<'a> Program<'a> {
-    /// Checks every word of a program.
+    /// Checks every word of a program up to its end. What follows the end is ignored, as in the original design.
     ///
     /// # Errors
     /// The first deviation from the format, with the number of its word.
@@ -134,15 +136,12 @@ impl<'a> Program<'a> {
             let Some(viewing) = checker.take(instruction).map_err(at)? else {
                 continue;
             };
-            let after = bytes.len() - WORD_BYTES * (index + 1);
-            if after > 0 {
-                let violation = Violation::new(Expected::NothingAfterEnd, Found::Bytes(after));
-                return Err(violation.at(Location::Word(index + 2)));
-            }
+            let words = words.get(..=index).unwrap_or_default();
             return Ok(Self {
                 viewing,
                 segments: checker.segments(),
                 words,
+                ignored: bytes.len() - words.as_flattened().len(),
             });
         }
         let violation = if rest.is_empty() {
@@ -163,7 +162,12 @@ impl<'a> Program<'a> {
         self.segments
     }
 
-    /// All bytes of the program.
+    /// Number of bytes that followed the end of the program, and were ignored.
+    pub const fn ignored(&self) -> usize {
+        self.ignored
+    }
+
+    /// All bytes of the program, up to its end.
     pub const fn bytes(&self) -> &'a [u8] {
         self.words.as_flattened()
     }

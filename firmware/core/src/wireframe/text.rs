@@ -60,7 +60,7 @@ impl fmt::Display for Instruction {
     }
 }
 
-/// Translates a whole program from its text form to its binary form.
+/// Translates a whole program from its text form to its binary form. What follows the end is ignored, as in the original design.
 ///
 /// # Errors
 /// The first deviation from the format, with the number of its line.
@@ -70,7 +70,7 @@ pub fn assemble(text: &str) -> Result<alloc::vec::Vec<u8>, super::ProgramError<'
 
     let mut checker = super::Checker::default();
     let mut bytes = alloc::vec::Vec::new();
-    let (mut ended, mut last) = (false, 0);
+    let mut last = 0;
     for (number, line) in text.lines().enumerate().map(|(i, line)| (i + 1, line)) {
         last = number;
         let at = |violation: Violation<'static>| violation.at(Location::Line(number));
@@ -78,16 +78,17 @@ pub fn assemble(text: &str) -> Result<alloc::vec::Vec<u8>, super::ProgramError<'
         let Some(instruction) = parsed else {
             continue;
         };
-        if ended {
-            let word = Words::new(line).next().map_or(Found::More, Found::Word);
-            return Err(Violation::new(Expected::NothingAfterEnd, word).at(Location::Line(number)));
-        }
-        ended = checker.take(instruction).map_err(at)?.is_some();
         bytes.extend(instruction.encode());
+        if checker.take(instruction).map_err(at)?.is_some() {
+            return Ok(bytes);
+        }
     }
-    if ended {
-        Ok(bytes)
-    } else {
-        Err(Violation::new(Expected::End, Found::Exhausted).at(Location::Line(last + 1)))
-    }
+    Err(Violation::new(Expected::End, Found::Exhausted).at(Location::Line(last + 1)))
+}
+
+/// Number of lines after the first end, without blank lines and comments.
+pub fn lines_after_end(text: &str) -> usize {
+    let mut lines = text.lines().map(parse_line);
+    let _ = lines.find(|line| matches!(line, Ok(Some(Instruction::End))));
+    lines.filter(|line| !matches!(line, Ok(None))).count()
 }

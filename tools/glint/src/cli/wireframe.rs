@@ -1,7 +1,7 @@
 //! `glint wireframe`.
 
 use super::common::{DrawingArguments, bad_value, named, size};
-use super::messages::{print_json, say};
+use super::messages::{print_json, say, warn};
 use super::output::{Output, PICTURE, PROGRAM, STATISTICS};
 use super::progress::{advance, bar, spinner};
 use super::render::print_stats;
@@ -10,11 +10,11 @@ use glint::board::{BoardName, ModelOrBoard};
 use glint::model;
 use glint::render::{Frame, Rendered, Subject, WireframeSubject, on_model};
 use glint::view;
-use glint::wireframe::{self, Action, Form, Made, MotionForm, Played};
+use glint::wireframe::{self, Action, Form, Made, MotionForm, Played, Source};
 use glint_core::picture::{Samples, Size};
 use glint_core::wireframe::{Program, Viewing};
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Wireframe simulator: check, convert, make and render programs.
 ///
@@ -165,7 +165,7 @@ impl Summary {
 
 impl CheckArguments {
     fn run(self) -> anyhow::Result<()> {
-        let bytes = wireframe::read(&self.program)?;
+        let bytes = read(&self.program)?;
         let program = wireframe::check(&bytes)?;
         let summary = Summary::new(&program);
         if self.json {
@@ -187,7 +187,7 @@ impl ConvertArguments {
     fn run(self) -> anyhow::Result<()> {
         let form = Form::of(&self.out)?;
         let out = Output::open(&self.out, PROGRAM, [&self.input])?;
-        let bytes = wireframe::read(&self.input)?;
+        let bytes = read(&self.input)?;
         let program = form.encode(&wireframe::check(&bytes)?);
         out.write(|out| out.write_all(&program))
     }
@@ -267,7 +267,7 @@ impl RenderArguments {
         let statistics = self.stats.as_deref();
         let statistics = statistics.map(|path| Output::open(path, STATISTICS, [&self.program]));
         let statistics = statistics.transpose()?;
-        let bytes = wireframe::read(&self.program)?;
+        let bytes = read(&self.program)?;
         let Played {
             bytes,
             pose,
@@ -322,4 +322,13 @@ impl RenderArguments {
         let mut renderer = renderer.with_progress(advance(&bar));
         Ok(renderer.play(program, script, size, self.aa)?)
     }
+}
+
+/// Reads a program, and warns of what follows its end.
+fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
+    let Source { bytes, ignored } = wireframe::read(path)?;
+    if let Some(ignored) = ignored {
+        warn(format_args!("{}: {ignored}", path.display()));
+    }
+    Ok(bytes)
 }

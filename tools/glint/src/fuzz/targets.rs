@@ -302,7 +302,7 @@ fn run_image(input: &[u8]) -> bool {
 
 /// Parses a program, and transforms and projects its segments.
 fn run_program(form: Form, input: &[u8]) -> bool {
-    let Ok(bytes) = wireframe::parse(form, input.to_vec()) else {
+    let Ok(wireframe::Source { bytes, .. }) = wireframe::parse(form, input.to_vec()) else {
         return false;
     };
     let program = wireframe::check(&bytes);

@@ -145,7 +145,9 @@ fn a_session_with_commands() {
     let mut board = emulator();
     let mut renderer = renderer(&mut board);
     let text = "eye 0 0 4\nplane 2\nwindow -2 -1.125 2 1.125\nsegment -1 0 1 1 0.5 1\nsegment 0 -1 1 0 1 4\nend\n";
-    let program = wireframe::parse(wireframe::Form::Text, text.into()).unwrap();
+    let program = wireframe::parse(wireframe::Form::Text, text.into())
+        .unwrap()
+        .bytes;
     let console = renderer.console();
     console.command("quality fast").unwrap();
     let refused = |error: ConsoleError| error.to_string();

@@ -27,6 +27,13 @@ fn both_forms_of_a_program() {
         text,
         "eye 0 0 4\nplane 2\nwindow -2 -1.125 2 1.125\nsegment -1 0 1 1 0 1\nsegment 0 -1 1 0 1 1\nend\n"
     );
+    // What follows the end is ignored.
+    std::fs::write(folder.join("c.wft"), format!("{PROGRAM}no instruction\n")).unwrap();
+    std::fs::write(folder.join("d.wfb"), [&read("a.wfb")[..], b"more"].concat()).unwrap();
+    for (longer, to) in [("c.wft", "c.wfb"), ("d.wfb", "e.wfb")] {
+        succeed(&folder, &format!("wireframe convert {longer} {to}"));
+        assert_eq!(read(to), read("a.wfb"), "{longer}");
+    }
     let shown = "eye        0 0 4\nplane      2\nwindow     -2 -1.125 2 1.125\nprogram    2 segments, 96 bytes in binary form\n";
     for name in ["a.wft", "a.wfb"] {
         assert_eq!(succeed(&folder, &format!("wireframe check {name}")), shown);

@@ -1,7 +1,7 @@
 //! Tests of programs: text form, binary form, and every error.
 
 use glint_core::fixed::Q5_11;
-use glint_core::wireframe::text::{assemble, parse_line};
+use glint_core::wireframe::text::{assemble, lines_after_end, parse_line};
 use glint_core::wireframe::{Instruction, Program, WORD_BYTES, Window};
 use proptest::prelude::*;
 
@@ -142,7 +142,6 @@ window 1 0 1 1| => line 1: expected x of the window's lower corner below 1, foun
 window 0 2 1 1.5| => line 1: expected y of the window's lower corner below 1.5, found 2
 eye 0 0 1|eye 0 0 1| => line 2: expected one eye in the program, found a second one
 eye 0 0 1|plane 0|end| => line 3: expected one window in the program, found none
-eye 0 0 1|plane 0|window 0 0 1 1|end|# comment|end| => line 6: expected nothing after end, found "end" (column 1)
 "#;
 
 #[test]
@@ -155,6 +154,24 @@ fn refused_texts() {
 }
 
 #[test]
+fn what_follows_the_end_is_ignored() {
+    let good = assemble(TEXT).expect("a good program");
+    let program = Program::new_checked(&good).expect("a good program");
+    assert_eq!(program.ignored(), 0);
+    for surplus in [&[0; 5][..], &[0xff; 16], &good] {
+        let bytes = [&good[..], surplus].concat();
+        let longer = Program::new_checked(&bytes).expect("the same program");
+        assert_eq!(longer.ignored(), surplus.len());
+        assert_eq!(longer.bytes(), good);
+        assert_eq!(longer.word_count(), program.word_count());
+    }
+    assert_eq!(lines_after_end(TEXT), 0);
+    let longer = format!("{TEXT}\n# comment\n\nno instruction\nend\n");
+    assert_eq!(assemble(&longer).as_deref(), Ok(&good[..]));
+    assert_eq!(lines_after_end(&longer), 2);
+}
+
+#[test]
 fn refused_words() {
     let good = assemble(TEXT).expect("a good program");
     let with = |index: usize, word: [u8; WORD_BYTES]| {
@@ -162,7 +179,6 @@ fn refused_words() {
         bytes[WORD_BYTES * index..][..WORD_BYTES].copy_from_slice(&word);
         bytes
     };
-    let surplus = [&good[..], &[0; 5]].concat();
     let cases: Vec<(Vec<u8>, &str)> = vec![
         (vec![], "word 1: expected end, found the end of the input"),
         (
@@ -173,7 +189,6 @@ fn refused_words() {
             good[..85].to_vec(),
             "word 6: expected a word of 16 bytes, found 5 bytes",
         ),
-        (surplus, "word 8: expected nothing after end, found 5 bytes"),
         (
             with(3, word(0b011, [0; 6])),
             "word 4: expected an opcode (bits 98 to 96) of 000, 001, 010, 100 or 111, found 011",
