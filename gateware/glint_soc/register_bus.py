@@ -34,7 +34,9 @@ class RegisterStage(LiteXModule):
             self.bus.dat_r.eq(bank.bus.dat_r),
         ]
         self.sync += [
-            selected.eq(in_window),
+            # Only accesses select the bank. The bus also shows addresses of memory, whose lower bits can be those of the window: if the
+            # clock of the bank stopped then, its data would stay on the bus.
+            selected.eq(self.addressed),
             number.eq(self.bus.adr),
             bank.bus.we.eq(self.bus.we),
             bank.bus.re.eq(self.bus.re),

@@ -60,3 +60,21 @@ def test_accesses():
 
     run_simulation(soc, accesses())
     assert not problems
+
+
+def test_addresses_of_memory():
+    """Checks that an address without an access, as the bus shows it during accesses to memory, puts no data on the bus."""
+    soc = _Soc()
+    found = []
+
+    def accesses():
+        address = _WINDOWS[1] * CSR_PAGING // 4
+        yield from access(soc.bus, address, data=0x1234)
+        yield soc.bus.adr.eq(address)
+        for _ in range(8):
+            yield
+            found.append((yield soc.register_bus.bridge.csr.dat_r))
+
+    run_simulation(soc, accesses())
+    # The written register may still be on the bus for a clock after the access.
+    assert not any(found[1:]), found
