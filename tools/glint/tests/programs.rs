@@ -396,7 +396,7 @@ fn a_new_project_shows_its_program_in_the_page() {
     assert_ne!(turning, run_for(&mut board, 0, 10));
 }
 
-/// The programs of docs/report/programs.md, with the buttons that are held for their pictures.
+/// The programs of docs/program-sizes.md, with the buttons that are held for their pictures.
 const PROGRAMS: [(&str, u8); 7] = [
     ("cube", 0),
     ("solar", 0),
@@ -446,7 +446,7 @@ fn of_page(frame: &Frame) -> Vec<u8> {
 fn the_pages_of_programs_show_their_pictures_sizes_and_rates() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let updates = env::var_os("GLINT_UPDATE").is_some();
-    let path = root.join("docs/report/programs.md");
+    let path = root.join("docs/program-sizes.md");
     let mut page = fs::read_to_string(&path).unwrap();
     for (name, buttons) in PROGRAMS {
         let image = image(name);

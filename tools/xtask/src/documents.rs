@@ -57,7 +57,11 @@ fn target<'a>(page: &Path, link: &'a str) -> Option<(PathBuf, Option<&'a str>)> 
 
 /// Whether the figures of the page at this path are generated: a page of the report, or of the resources.
 fn is_report(path: &Path) -> bool {
-    let generated = ["docs/resources.md", "docs/scene-builds.md"];
+    let generated = [
+        "docs/program-sizes.md",
+        "docs/resources.md",
+        "docs/scene-builds.md",
+    ];
     path.starts_with("docs/report") || generated.iter().any(|page| path == Path::new(page))
 }
 
