@@ -50,11 +50,8 @@ fn draw_overlay(renderer: &mut Renderer, scene: &Scene, drawn: &Drawn) {
         return;
     }
     let rate = drawn.rate(renderer.frequency);
-    let Some(frame) = renderer.drawn_frame() else {
-        return;
-    };
     let size = scene.size;
-    let mut overlay = Overlay::new(frame, size);
+    let mut overlay = Overlay::new(renderer, size);
     overlay.line(format_args!("{}", scene.subject()));
     let by = match drawn.by {
         RenderedBy::Cpu(_) => Backend::Cpu,

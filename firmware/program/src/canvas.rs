@@ -14,7 +14,7 @@ use embedded_graphics::text::{Baseline, Text};
 use glint_core::picture::Size;
 
 /// Lends the pixels of the drawn picture.
-pub(crate) trait Pixels {
+pub trait Pixels {
     /// Colours in RGB565, row by row; empty while there is no picture. The next picture is then drawn on every pixel.
     fn pixels(&mut self) -> &mut [u16];
 }
@@ -27,7 +27,8 @@ pub struct Canvas<'c> {
 }
 
 impl<'c> Canvas<'c> {
-    pub(crate) fn new(source: &'c mut dyn Pixels, size: Size) -> Self {
+    /// The picture of this size that `source` lends.
+    pub fn new(source: &'c mut dyn Pixels, size: Size) -> Self {
         Self { source, size }
     }
 

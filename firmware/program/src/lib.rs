@@ -100,7 +100,7 @@ mod supervision;
 
 pub use aligned::Aligned;
 pub use board::{Board, Button, Hand, Motion};
-pub use canvas::Canvas;
+pub use canvas::{Canvas, Pixels};
 pub use embedded_graphics as graphics;
 pub use glint_core as core;
 pub use glint_model as model;
