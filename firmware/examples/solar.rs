@@ -26,12 +26,12 @@ const fn planet(orbit: &str, size: &str, turns: &str, colour: &'static str) -> P
 }
 
 const PLANETS: [Planet; 6] = [
-    planet("0.55", "0.10", "0.40", "b0a090"),
-    planet("0.80", "0.16", "0.25", "e8c070"),
-    planet("1.10", "0.18", "0.16", "4080ff"),
-    planet("1.40", "0.13", "0.10", "d05030"),
-    planet("1.90", "0.40", "0.05", "d0a070"),
-    planet("2.50", "0.32", "0.03", "e0d0a0"),
+    planet("0.75", "0.16", "0.40", "b0a090"),
+    planet("1.00", "0.24", "0.25", "e8c070"),
+    planet("1.30", "0.28", "0.16", "4080ff"),
+    planet("1.60", "0.20", "0.10", "d05030"),
+    planet("2.05", "0.60", "0.05", "d0a070"),
+    planet("2.60", "0.48", "0.03", "e0d0a0"),
 ];
 /// The planet with the moon.
 const EARTH: usize = 2;
@@ -89,7 +89,8 @@ impl Program for Solar {
             Q32_32::lit("5"),
             Turns(0),
             Turns::from_degrees(Q32_32::lit("62")),
-        )?;
+        )?
+        .with_field_of_view(Turns::from_degrees(Q32_32::lit("76")))?;
         picture.appearance.background = Some(Background::Colour([4, 4, 12]));
         picture.appearance.ambient = Some([40; 3]);
         // A light has a direction, not a place: that of the sun comes from above.
@@ -97,15 +98,15 @@ impl Program for Solar {
         if let Ok(light) = Light::new(up, [0xff; 3]) {
             let _ = picture.appearance.lights.push(light);
         }
-        let sun = placed(Q8_24::lit("0.6"), Q8_24::ZERO, Turns(0))?;
+        let sun = placed(Q8_24::lit("0.9"), Q8_24::ZERO, Turns(0))?;
         self.ball(picture, sun, "ffe080")?;
         for (&(orbit, size, _, colour), &angle) in PLANETS.iter().zip(&self.angles) {
             self.ball(picture, placed(size, orbit, angle)?, colour)?;
         }
         let earth = placed(Q8_24::ONE, PLANETS[EARTH].0, self.angles[EARTH])?;
         let moon = placed(
-            Q8_24::lit("0.06"),
-            Q8_24::lit("0.17"),
+            Q8_24::lit("0.09"),
+            Q8_24::lit("0.27"),
             self.angles[PLANETS.len()],
         )?;
         self.ball(picture, moon.then(&earth)?, "c0c0c8")

@@ -66,8 +66,7 @@ def test_random_traffic(data_width):
 
 
 def test_selected_slaves():
-    """Compares the slaves that the decoder selects by stored comparisons, as in the SoC, with those that it selects by itself, for random
-    requests of both buses."""
+    """Checks the stored selections of the SoC's decoder against LiteX's own selections, for random requests of both buses."""
     rng, top = random.Random(8), Module()
     top.data, top.instructions = (wishbone.Interface(data_width=32, address_width=32, addressing="word") for _ in range(2))
     top.submodules.stage = stage = CpuBus(top.data, top.instructions)

@@ -229,8 +229,8 @@ impl Board {
         self.pictures
     }
 
-    /// The angle of a motion with this number of turns per second, at the time of the next picture. It is computed from the whole time, so
-    /// rounding errors do not add up.
+    /// The angle of a motion with this number of turns per second, at the time of the next picture. It is computed from the whole time in
+    /// microseconds and rounded down to 2^−32 turns, so errors do not add up.
     pub fn turns(&self, per_second: Q32_32) -> Turns {
         let microseconds = i128::try_from(self.time.as_micros()).unwrap_or_default();
         Turns((i128::from(per_second.to_bits()) * microseconds).div_euclid(1_000_000) as u32)

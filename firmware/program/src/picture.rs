@@ -88,8 +88,10 @@ enum Main<'p> {
     Lines(WireframeSubject<'p>),
 }
 
-/// The description of a picture: camera and light, then what is seen. A new picture has the board's largest size, four samples a pixel
-/// where the gateware draws them, white light at the camera, and behind meshes a grey gradient.
+/// The description of a picture: camera, light, and the things that it shows.
+///
+/// A new picture has the board's largest size. It has four samples a pixel if the gateware draws them. The light is white and comes from
+/// the camera. Meshes stand before a grey gradient.
 ///
 /// ```
 /// use glint_program::core::fixed::{Q8_24, Q32_32, Turns, U4_28};
