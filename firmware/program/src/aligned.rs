@@ -13,7 +13,7 @@ pub struct Aligned<T: ?Sized>(pub T);
 /// The bytes of a file, aligned for the engines: `include_aligned!("ship.mesh")` is a `&'static [u8]` in the program's image. The path is
 /// relative to the source file.
 ///
-/// ```
+/// ```standalone_crate
 /// let bytes = glint_program::include_aligned!("../Cargo.toml");
 /// assert!(bytes.as_ptr().addr() % 16 == 0 && bytes.starts_with(b"[package]"));
 /// ```

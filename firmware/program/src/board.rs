@@ -26,6 +26,18 @@ pub(crate) const RECEIVED: usize = 256;
 const SAMPLES: usize = 64;
 
 /// A button of the board.
+///
+/// ```
+/// # use glint_program::host::Host;
+/// use glint_program::Button;
+///
+/// let mut host = Host::<()>::start();
+/// host.hold(&[Button::Left, Button::Up]);
+/// host.run(1)?;
+/// let board = host.board();
+/// assert!(board.is_held(Button::Left) && board.is_held(Button::Up) && !board.is_held(Button::Right));
+/// # Ok::<(), glint_program::host::HostError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Button {
     /// Button 0.
@@ -49,6 +61,11 @@ pub enum Button {
 /// fn look(board: &Board) -> Option<View> {
 ///     board.motion()?.view([Q32_32::ZERO; 3]).ok()
 /// }
+/// # use glint_program::core::orientation::{Quaternion, Sample};
+/// # let mut host = glint_program::host::Host::<()>::start();
+/// # assert!(look(host.board()).is_none());
+/// # host.move_sensor(glint_program::Motion { attitude: Quaternion::IDENTITY, sample: Sample::default() });
+/// # assert!(look(host.board()).is_some());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Motion {
@@ -60,6 +77,18 @@ pub struct Motion {
 
 impl Motion {
     /// The camera at `eye` that looks in the direction of the sensor.
+    ///
+    /// ```
+    /// use glint_program::Motion;
+    /// use glint_program::core::fixed::Q32_32;
+    /// use glint_program::core::orientation::{Quaternion, Sample};
+    ///
+    /// let level = Motion { attitude: Quaternion::IDENTITY, sample: Sample::default() };
+    /// let eye = [Q32_32::ZERO, Q32_32::ONE, Q32_32::ZERO];
+    /// assert_eq!(level.view(eye)?.eye(), eye);
+    /// assert!(level.view([Q32_32::lit("33"); 3]).is_err());
+    /// # Ok::<(), glint_program::core::camera::ViewError>(())
+    /// ```
     ///
     /// # Errors
     /// [`ViewError`] for an eye more than 32 world units from the origin.
@@ -82,6 +111,22 @@ impl Motion {
 ///         _ => None,
 ///     }
 /// }
+/// # use glint_program::core::{fixed::{Q32_32, Turns}, gesture::Pose};
+/// # use glint_program::{Picture, PictureError, Program, host::Host};
+/// # struct Steered(Option<View>);
+/// # impl Program for Steered {
+/// #     fn start(_: &mut Board) -> Self { Self(None) }
+/// #     fn update(&mut self, board: &mut Board) { self.0 = steer(board); }
+/// #     fn draw<'p>(&'p self, _: &mut Picture<'p>) -> Result<(), PictureError> { Ok(()) }
+/// # }
+/// # let mut host = Host::<Steered>::start();
+/// # let pose = Pose { theta: Turns(0), phi: Turns::QUARTER, r: Q32_32::lit("3") };
+/// # for is_seen in [false, true] {
+/// #     host.show_hand(Some(Hand { pose, is_seen }));
+/// #     host.run(1)?;
+/// #     assert_eq!(host.program().0.is_some(), is_seen);
+/// # }
+/// # Ok::<(), glint_program::host::HostError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Hand {
@@ -95,16 +140,28 @@ pub struct Hand {
 /// The board: its input since the last picture, and its output.
 ///
 /// ```
+/// # use glint_program::{Picture, PictureError, Program, host::Host};
 /// use glint_program::{Board, Button};
 ///
-/// fn update(board: &mut Board, lives: &mut u64) {
+/// # struct Game { lives: u64 }
+/// # impl Program for Game {
+/// #     fn start(_: &mut Board) -> Self { Self { lives: 3 } }
+/// fn update(&mut self, board: &mut Board) {
 ///     if board.is_pressed(Button::Up) {
-///         *lives = lives.saturating_sub(1);
-///         board.log(format_args!("{lives} lives"));
+///         self.lives = self.lives.saturating_sub(1);
+///         board.log(format_args!("{} lives", self.lives));
 ///     }
-///     board.show_number(*lives);
-///     board.leds = (1 << (*lives).min(15)) - 1;
+///     board.show_number(self.lives);
+///     board.leds = (1 << self.lives.min(15)) - 1;
 /// }
+/// #     fn draw<'p>(&'p self, _: &mut Picture<'p>) -> Result<(), PictureError> { Ok(()) }
+/// # }
+/// let mut host = Host::<Game>::start();
+/// host.hold(&[Button::Up]);
+/// host.run(3)?;
+/// assert_eq!(host.board().leds, 0b11);
+/// assert!(host.log().contains("2 lives"));
+/// # Ok::<(), glint_program::host::HostError>(())
 /// ```
 pub struct Board {
     /// Levels of the sixteen LEDs; bit 0 is LED 0.
@@ -215,69 +272,296 @@ impl Board {
     }
 
     /// Time since the start of the program.
+    ///
+    /// ```
+    /// # use glint_program::host::Host;
+    /// let mut host = Host::<()>::start();
+    /// host.run(121)?; // The first picture is drawn at 0.
+    /// assert_eq!(host.board().time().as_secs(), 2);
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
     pub const fn time(&self) -> Duration {
         self.time
     }
 
     /// Time since the previous picture; 0 for the first.
+    ///
+    /// ```
+    /// # use glint_program::host::Host;
+    /// let mut host = Host::<()>::start();
+    /// host.run(1)?;
+    /// assert!(host.board().step().is_zero());
+    /// host.run(1)?;
+    /// assert_eq!(host.board().step().as_millis(), 16);
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
     pub const fn step(&self) -> Duration {
         self.step
     }
 
     /// Number of pictures so far, modulo 2^32.
+    ///
+    /// ```
+    /// # use glint_program::{Picture, PictureError, Program, host::Host};
+    /// use glint_program::Board;
+    ///
+    /// # struct Blink(bool);
+    /// # impl Program for Blink {
+    /// #     fn start(_: &mut Board) -> Self { Self(false) }
+    /// fn update(&mut self, board: &mut Board) {
+    ///     // Eight pictures with, eight without.
+    ///     self.0 = board.pictures() & 8 == 0;
+    /// }
+    /// #     fn draw<'p>(&'p self, _: &mut Picture<'p>) -> Result<(), PictureError> { Ok(()) }
+    /// # }
+    /// # let mut host = Host::<Blink>::start();
+    /// # host.run(8)?;
+    /// # assert!(host.program().0);
+    /// # host.run(1)?;
+    /// # assert!(!host.program().0);
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
     pub const fn pictures(&self) -> u32 {
         self.pictures
     }
 
     /// The angle of a motion with this number of turns per second, at the time of the next picture. It is computed from the whole time in
     /// microseconds and rounded down to 2^−32 turns, so errors do not add up.
+    ///
+    /// ```
+    /// # use glint_program::host::Host;
+    /// use glint_program::core::fixed::{Q32_32, Turns};
+    ///
+    /// let mut host = Host::<()>::start();
+    /// // A turn in four seconds is a quarter in one.
+    /// host.run(61)?;
+    /// let angle = host.board().turns(Q32_32::lit("0.25"));
+    /// assert!(angle.0.abs_diff(Turns::QUARTER.0) < 1 << 16);
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
     pub fn turns(&self, per_second: Q32_32) -> Turns {
         let microseconds = i128::try_from(self.time.as_micros()).unwrap_or_default();
         Turns((i128::from(per_second.to_bits()) * microseconds).div_euclid(1_000_000) as u32)
     }
 
     /// Largest size of a picture.
+    ///
+    /// ```
+    /// # use glint_program::core::mesh::Mesh;
+    /// # use glint_program::{Board, Picture, PictureError, Program, host::Host};
+    /// use glint_program::core::picture::Size;
+    ///
+    /// # struct Quick { size: Size }
+    /// # impl Program for Quick {
+    /// fn start(board: &mut Board) -> Self {
+    ///     // A quarter of the pixels, where the board has more than the smallest size.
+    ///     let half = Size::of(board.largest_size().width() / 2, board.largest_size().height() / 2);
+    ///     Self { size: half.unwrap_or(Size::W320) }
+    /// }
+    /// #     fn update(&mut self, _: &mut Board) {}
+    /// fn draw<'p>(&'p self, picture: &mut Picture<'p>) -> Result<(), PictureError> {
+    ///     picture.size = self.size;
+    ///     Ok(())
+    /// }
+    /// # }
+    /// # let mut host = Host::<Quick>::start();
+    /// # host.run(1)?;
+    /// # assert_eq!(host.size(), Size::W320);
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
     pub const fn largest_size(&self) -> Size {
         self.defaults.size
     }
 
     /// Whether a button is down.
+    ///
+    /// ```
+    /// # use glint_program::host::Host;
+    /// use glint_program::{Board, Button};
+    ///
+    /// let mut host = Host::<()>::start();
+    /// /// −1, 0 or 1.
+    /// fn steering(board: &Board) -> i32 {
+    ///     i32::from(board.is_held(Button::Right)) - i32::from(board.is_held(Button::Left))
+    /// }
+    /// host.hold(&[Button::Left]);
+    /// host.run(5)?;
+    /// assert_eq!(steering(host.board()), -1);
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
     pub const fn is_held(&self, button: Button) -> bool {
         self.held >> button as u8 & 1 != 0
     }
 
     /// Whether a button has been pressed since the previous picture; bounces of its contact are suppressed.
+    ///
+    /// ```
+    /// # use glint_program::{Picture, PictureError, Program, host::Host};
+    /// use glint_program::{Board, Button};
+    ///
+    /// # struct Counter(u32);
+    /// # impl Program for Counter {
+    /// #     fn start(_: &mut Board) -> Self { Self(0) }
+    /// fn update(&mut self, board: &mut Board) {
+    ///     if board.is_pressed(Button::Up) {
+    ///         self.0 += 1;
+    ///     }
+    /// }
+    /// #     fn draw<'p>(&'p self, _: &mut Picture<'p>) -> Result<(), PictureError> { Ok(()) }
+    /// # }
+    /// let mut host = Host::<Counter>::start();
+    /// host.hold(&[Button::Up]);
+    /// host.run(5)?;
+    /// assert_eq!(host.program().0, 1, "a press lasts, but counts once");
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
     pub const fn is_pressed(&self, button: Button) -> bool {
         self.pressed >> button as u8 & 1 != 0
     }
 
     /// The sixteen switches; bit 0 is switch 0.
+    ///
+    /// ```
+    /// # use glint_program::host::Host;
+    /// let mut host = Host::<()>::start();
+    /// host.switch(0b1000);
+    /// host.run(1)?;
+    /// let is_on = |number: u32| host.board().switches() >> number & 1 != 0;
+    /// assert!(is_on(3) && !is_on(0));
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
     pub const fn switches(&self) -> u16 {
         self.switches
     }
 
     /// The motion sensor's attitude; `None` before its first sample, or without a sensor.
+    ///
+    /// ```
+    /// # use glint_program::host::Host;
+    /// use glint_program::Motion;
+    /// use glint_program::core::orientation::{Quaternion, Sample};
+    ///
+    /// let mut host = Host::<()>::start();
+    /// assert!(host.board().motion().is_none());
+    /// let sample = Sample { gyro: [0, 0, 160], ..Sample::default() };
+    /// host.move_sensor(Motion { attitude: Quaternion::IDENTITY, sample });
+    /// host.run(1)?;
+    /// assert_eq!(host.board().motion().map(|motion| motion.sample.gyro[2]), Some(160));
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
     pub const fn motion(&self) -> Option<&Motion> {
         self.motion.as_ref()
     }
 
     /// The hand; `None` while [`watches_hand`](Self::watches_hand) is false, or without an image sensor.
+    ///
+    /// ```
+    /// # use glint_program::{Picture, PictureError, Program, host::Host};
+    /// use glint_program::Board;
+    ///
+    /// # struct Waved(Option<bool>);
+    /// # impl Program for Waved {
+    /// #     fn start(board: &mut Board) -> Self { board.watches_hand = true; Self(None) }
+    /// fn update(&mut self, board: &mut Board) {
+    ///     self.0 = board.hand().map(|hand| hand.is_seen);
+    /// }
+    /// #     fn draw<'p>(&'p self, _: &mut Picture<'p>) -> Result<(), PictureError> { Ok(()) }
+    /// # }
+    /// # use glint_program::Hand;
+    /// # use glint_program::core::{fixed::{Q32_32, Turns}, gesture::Pose};
+    /// # let pose = Pose { theta: Turns(0), phi: Turns::QUARTER, r: Q32_32::lit("3") };
+    /// let mut host = Host::<Waved>::start();
+    /// host.run(1)?;
+    /// assert_eq!(host.program().0, None, "no image sensor");
+    /// host.show_hand(Some(Hand { pose, is_seen: true }));
+    /// host.run(1)?;
+    /// assert_eq!(host.program().0, Some(true));
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
     pub fn hand(&self) -> Option<&Hand> {
         self.hand.as_ref().filter(|_| self.watches_hand)
     }
 
     /// Samples of the motion sensor since the previous picture, the oldest first; it sends 1,000 a second.
+    ///
+    /// ```
+    /// # use glint_program::{Picture, PictureError, Program, host::Host};
+    /// use glint_program::Board;
+    ///
+    /// # struct Steps(u32);
+    /// # impl Program for Steps {
+    /// #     fn start(_: &mut Board) -> Self { Self(0) }
+    /// fn update(&mut self, board: &mut Board) {
+    ///     // A shock is more than 2 g of 4,096 counts upwards.
+    ///     let shocks = board.samples().iter().filter(|sample| sample.accel[2] > 2 * 4096);
+    ///     self.0 += shocks.count() as u32;
+    /// }
+    /// #     fn draw<'p>(&'p self, _: &mut Picture<'p>) -> Result<(), PictureError> { Ok(()) }
+    /// # }
+    /// # use glint_program::{Motion, core::orientation::{Quaternion, Sample}};
+    /// # let mut host = Host::<Steps>::start();
+    /// # for z in [4096, 9000, 4000] {
+    /// #     let sample = Sample { accel: [0, 0, z], ..Sample::default() };
+    /// #     host.move_sensor(Motion { attitude: Quaternion::IDENTITY, sample });
+    /// # }
+    /// # host.run(2)?;
+    /// # assert_eq!(host.program().0, 1);
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
     pub fn samples(&self) -> &[Sample] {
         &self.samples
     }
 
     /// Bytes that the serial line has received since the previous picture.
+    ///
+    /// ```
+    /// # use glint_program::{Picture, PictureError, Program, host::Host};
+    /// use glint_program::Board;
+    ///
+    /// # struct Switch;
+    /// # impl Program for Switch {
+    /// #     fn start(_: &mut Board) -> Self { Self }
+    /// fn update(&mut self, board: &mut Board) {
+    ///     match board.received().last() {
+    ///         Some(b'+') => board.leds = 0xffff,
+    ///         Some(b'-') => board.leds = 0,
+    ///         _ => {}
+    ///     }
+    /// }
+    /// #     fn draw<'p>(&'p self, _: &mut Picture<'p>) -> Result<(), PictureError> { Ok(()) }
+    /// # }
+    /// let mut host = Host::<Switch>::start();
+    /// host.send(b"-+");
+    /// host.run(1)?;
+    /// assert_eq!(host.board().leds, 0xffff);
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
     pub fn received(&self) -> &[u8] {
         &self.received
     }
 
     /// Writes a line to the serial line, after the time. A line beyond 1,024 bytes for a picture is dropped. The lines are sent after the
     /// update, so a panic in the update loses them.
+    ///
+    /// ```
+    /// # use glint_program::{Picture, PictureError, Program, host::Host};
+    /// use glint_program::Board;
+    ///
+    /// # struct Watch;
+    /// # impl Program for Watch {
+    /// #     fn start(_: &mut Board) -> Self { Self }
+    /// fn update(&mut self, board: &mut Board) {
+    ///     if board.pictures() % 60 == 0 {
+    ///         board.log(format_args!("{} pictures", board.pictures()));
+    ///     }
+    /// }
+    /// #     fn draw<'p>(&'p self, _: &mut Picture<'p>) -> Result<(), PictureError> { Ok(()) }
+    /// # }
+    /// let mut host = Host::<Watch>::start();
+    /// host.run(61)?;
+    /// assert_eq!(host.log(), "    0.000 0 pictures\r\n    1.000 60 pictures\r\n");
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
     pub fn log(&mut self, text: fmt::Arguments) {
         let [seconds, milliseconds] = [self.time.as_secs(), u64::from(self.time.subsec_millis())];
         let before = self.log.len();
@@ -287,16 +571,58 @@ impl Board {
     }
 
     /// Shows a whole number on the digits, right-aligned.
+    ///
+    /// ```
+    /// # use glint_program::{Picture, PictureError, Program, host::Host};
+    /// use glint_program::Board;
+    ///
+    /// # struct Meter;
+    /// # impl Program for Meter {
+    /// #     fn start(_: &mut Board) -> Self { Self }
+    /// fn update(&mut self, board: &mut Board) {
+    ///     board.show_number(2026);
+    /// }
+    /// #     fn draw<'p>(&'p self, _: &mut Picture<'p>) -> Result<(), PictureError> { Ok(()) }
+    /// # }
+    /// # use glint_program::core::digits::segments;
+    /// # let mut host = Host::<Meter>::start();
+    /// # host.run(1)?;
+    /// # assert_eq!(host.board().digits.map(|all| [all[4], all[7]]), Some(['2', '6'].map(segments)));
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
     pub fn show_number(&mut self, number: u64) {
         self.digits = Some(digits([Display::default(), Display::number(number)]));
     }
 
     /// A built-in cube of edge length 1, with one colour per side.
+    ///
+    /// ```
+    /// # use glint_program::host::Host;
+    /// let host = Host::<()>::start();
+    /// assert_eq!(host.board().cube().vertex_count(), 8);
+    /// ```
     pub const fn cube(&self) -> Mesh<'static> {
         self.shapes.cube()
     }
 
     /// A built-in mesh; the cube if its memory is used up, which does not occur.
+    ///
+    /// ```
+    /// # use glint_program::{Picture, PictureError, Program, host::Host};
+    /// use glint_program::Board;
+    /// use glint_program::core::mesh::Mesh;
+    /// use glint_program::core::shape::Shape;
+    ///
+    /// # struct Ring { mesh: Mesh<'static> }
+    /// # impl Program for Ring {
+    /// fn start(board: &mut Board) -> Self {
+    ///     Self { mesh: board.shape(Shape::Torus) }
+    /// }
+    /// #     fn update(&mut self, _: &mut Board) {}
+    /// #     fn draw<'p>(&'p self, _: &mut Picture<'p>) -> Result<(), PictureError> { Ok(()) }
+    /// # }
+    /// assert_eq!(Host::<Ring>::start().program().mesh.triangle_count(), 1024);
+    /// ```
     pub fn shape(&mut self, shape: Shape) -> Mesh<'static> {
         self.shapes.shape(shape).unwrap_or(self.shapes.cube())
     }

@@ -14,13 +14,70 @@ use embedded_graphics::text::{Baseline, Text};
 use glint_core::picture::Size;
 
 /// Lends the pixels of the drawn picture.
+///
+/// ```
+/// use glint_program::Pixels;
+///
+/// struct Memory(Vec<u16>);
+///
+/// impl Pixels for Memory {
+///     fn pixels(&mut self) -> &mut [u16] {
+///         &mut self.0
+///     }
+/// }
+///
+/// let mut memory = Memory(vec![0xffff; 4]);
+/// memory.pixels()[2] = 0;
+/// assert_eq!(memory.0, [0xffff, 0xffff, 0, 0xffff]);
+/// ```
 pub trait Pixels {
     /// Colours in RGB565, row by row; empty while there is no picture. The next picture is then drawn on every pixel.
+    ///
+    /// ```
+    /// use glint_program::Pixels;
+    /// use glint_program::core::colour::Rgb565;
+    ///
+    /// /// Turns the picture into its negative.
+    /// fn invert(source: &mut dyn Pixels) {
+    ///     for colour in source.pixels() {
+    ///         *colour = !*colour;
+    ///     }
+    /// }
+    /// # struct One([u16; 1]);
+    /// # impl Pixels for One { fn pixels(&mut self) -> &mut [u16] { &mut self.0 } }
+    /// # let mut black = One([0]);
+    /// # invert(&mut black);
+    /// # assert_eq!(black.0, [Rgb565::WHITE.0]);
+    /// ```
     fn pixels(&mut self) -> &mut [u16];
 }
 
 /// The picture that was just drawn, as a [`DrawTarget`] of the crate `embedded-graphics` in RGB565. The soft core writes the pixels, so
 /// it is for text and small shapes. Pixels outside of the picture are ignored.
+///
+/// ```
+/// # use glint_program::{Board, Picture, PictureError, Program, host::Host};
+/// use glint_program::Canvas;
+/// use glint_program::graphics::Drawable;
+/// use glint_program::graphics::geometry::Point;
+/// use glint_program::graphics::pixelcolor::{Rgb565, RgbColor};
+/// use glint_program::graphics::primitives::{Circle, Primitive, PrimitiveStyle};
+///
+/// # struct Sight;
+/// # impl Program for Sight {
+/// #     fn start(_: &mut Board) -> Self { Self }
+/// #     fn update(&mut self, _: &mut Board) {}
+/// #     fn draw<'p>(&'p self, _: &mut Picture<'p>) -> Result<(), PictureError> { Ok(()) }
+/// fn paint(&self, canvas: &mut Canvas) {
+///     let circle = Circle::with_center(Point::new(320, 180), 41);
+///     let Ok(()) = circle.into_styled(PrimitiveStyle::with_stroke(Rgb565::GREEN, 1)).draw(canvas);
+/// }
+/// # }
+/// # let mut host = Host::<Sight>::start();
+/// # host.run(1)?;
+/// # assert_eq!(host.picture()[180 * 640 + 340], 0x07e0);
+/// # Ok::<(), glint_program::host::HostError>(())
+/// ```
 pub struct Canvas<'c> {
     source: &'c mut dyn Pixels,
     size: Size,
@@ -28,6 +85,19 @@ pub struct Canvas<'c> {
 
 impl<'c> Canvas<'c> {
     /// The picture of this size that `source` lends.
+    ///
+    /// ```
+    /// # struct Memory(Vec<u16>);
+    /// # impl glint_program::Pixels for Memory { fn pixels(&mut self) -> &mut [u16] { &mut self.0 } }
+    /// use glint_program::Canvas;
+    /// use glint_program::core::picture::Size;
+    /// use glint_program::graphics::draw_target::DrawTarget;
+    /// use glint_program::graphics::pixelcolor::{Rgb565, RgbColor};
+    ///
+    /// let mut memory = Memory(vec![0; Size::W320.pixel_count()]);
+    /// let Ok(()) = Canvas::new(&mut memory, Size::W320).clear(Rgb565::BLUE);
+    /// assert!(memory.0.iter().all(|&colour| colour == 0x001f));
+    /// ```
     pub fn new(source: &'c mut dyn Pixels, size: Size) -> Self {
         Self { source, size }
     }
@@ -35,11 +105,17 @@ impl<'c> Canvas<'c> {
     /// Writes text from its upper left corner `place` on. Returns the place after the last character.
     ///
     /// ```
-    /// # fn paint(canvas: &mut glint_program::Canvas) {
+    /// # struct Memory(Vec<u16>);
+    /// # impl glint_program::Pixels for Memory { fn pixels(&mut self) -> &mut [u16] { &mut self.0 } }
+    /// # let mut memory = Memory(vec![0; 320 * 180]);
+    /// # let mut canvas = glint_program::Canvas::new(&mut memory, glint_program::core::picture::Size::W320);
     /// use glint_program::graphics::mono_font::ascii::FONT_10X20;
     /// use glint_program::graphics::pixelcolor::{Rgb565, RgbColor};
-    /// canvas.text([8, 8], &FONT_10X20, Rgb565::WHITE, format_args!("score {}", 17));
-    /// # }
+    ///
+    /// let next = canvas.text([8, 8], &FONT_10X20, Rgb565::WHITE, format_args!("score "));
+    /// assert_eq!(next, [8 + 6 * 10, 8]);
+    /// canvas.text(next, &FONT_10X20, Rgb565::YELLOW, format_args!("{}", 17));
+    /// # assert!(memory.0.contains(&0xffe0));
     /// ```
     pub fn text(
         &mut self,

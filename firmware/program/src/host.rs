@@ -46,6 +46,24 @@ const SHAPES: usize = shape::MAX_BYTES * Shape::ALL.len();
 const EDGES: usize = 1 << 20;
 
 /// Reason why a picture is not drawn.
+///
+/// ```
+/// # use glint_program::core::{field::Field, quality::Quality};
+/// # use glint_program::{Board, Picture, PictureError, Program};
+/// use glint_program::host::{Host, HostError};
+///
+/// # struct Two(Field);
+/// # impl Program for Two {
+/// #     fn start(_: &mut Board) -> Self { Self(Field::parse("menger:3").unwrap()) }
+/// #     fn update(&mut self, _: &mut Board) {}
+/// fn draw<'p>(&'p self, picture: &mut Picture<'p>) -> Result<(), PictureError> {
+///     picture.field(&self.0, Quality::Fast)?;
+///     picture.field(&self.0, Quality::Fast)
+/// }
+/// # }
+/// let drawn = Host::<Two>::start().run(1);
+/// assert!(matches!(drawn, Err(HostError::Picture(PictureError::Subjects))));
+/// ```
 #[derive(Debug)]
 pub enum HostError {
     /// The program's description is faulty.
@@ -72,6 +90,22 @@ impl From<PictureError> for HostError {
 }
 
 /// A program on the host.
+///
+/// ```
+/// use glint_program::Board;
+/// use glint_program::host::Host;
+///
+/// /// The speed that the first four switches set.
+/// fn speed(board: &Board) -> u16 {
+///     board.switches() & 0xf
+/// }
+///
+/// let mut host = Host::<()>::start();
+/// host.switch(0b10_0101);
+/// host.run(1)?;
+/// assert_eq!(speed(host.board()), 5);
+/// # Ok::<(), glint_program::host::HostError>(())
+/// ```
 pub struct Host<P> {
     program: P,
     board: Board,
@@ -88,6 +122,14 @@ impl<P: Program> Host<P> {
     /// Starts the program on a board with the engines of the virtual board, in 640×360.
     ///
     /// The memory of its meshes and edges stays until the end of the process.
+    ///
+    /// ```
+    /// use glint_program::host::Host;
+    ///
+    /// let host = Host::<()>::start();
+    /// assert_eq!(host.board().pictures(), 0);
+    /// assert!(host.picture().is_empty(), "nothing is drawn yet");
+    /// ```
     #[must_use]
     pub fn start() -> Self {
         let shapes = Shapes::new(vec![0; SHAPES].leak()).expect("the built-in cube is a mesh");
@@ -110,27 +152,105 @@ impl<P: Program> Host<P> {
     }
 
     /// Holds these buttons, and no others, for the next pictures.
+    ///
+    /// ```
+    /// # use glint_program::host::Host;
+    /// use glint_program::Button;
+    ///
+    /// let mut host = Host::<()>::start();
+    /// host.hold(&[Button::Down]);
+    /// host.run(1)?;
+    /// assert!(host.board().is_held(Button::Down));
+    /// host.hold(&[]);
+    /// host.run(1)?;
+    /// assert!(!host.board().is_held(Button::Down));
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
     pub fn hold(&mut self, buttons: &[Button]) {
         let bits = buttons.iter().map(|&button| 1 << button as u8);
         self.levels.buttons = bits.fold(0, |all, bit: u8| all | bit);
     }
 
     /// Sets the switches for the next pictures.
+    ///
+    /// ```
+    /// # use glint_program::host::Host;
+    /// let mut host = Host::<()>::start();
+    /// host.switch(1 << 15);
+    /// host.run(2)?;
+    /// assert_eq!(host.board().switches(), 0x8000);
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
     pub const fn switch(&mut self, switches: u16) {
         self.levels.switches = switches;
     }
 
     /// Adds a sample of the motion sensor to the next picture.
+    ///
+    /// ```
+    /// # use glint_program::host::Host;
+    /// use glint_program::Motion;
+    /// use glint_program::core::fixed::Turns;
+    /// use glint_program::core::orientation::{Angles, Quaternion, Sample};
+    ///
+    /// let mut host = Host::<()>::start();
+    /// let yaw = Angles { yaw: Turns::QUARTER, ..Angles::default() };
+    /// let motion = Motion { attitude: Quaternion::from_angles(yaw), sample: Sample::default() };
+    /// host.move_sensor(motion);
+    /// host.run(1)?;
+    /// assert_eq!(host.board().motion(), Some(&motion));
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
     pub fn move_sensor(&mut self, motion: Motion) {
         self.board.add_sample(motion);
     }
 
     /// Sets the hand in front of the image sensor for the next pictures; `None` without an image sensor.
+    ///
+    /// ```
+    /// # use glint_program::{Board, Picture, PictureError, Program, host::Host};
+    /// # struct Watcher;
+    /// # impl Program for Watcher {
+    /// #     fn start(board: &mut Board) -> Self { board.watches_hand = true; Self }
+    /// #     fn update(&mut self, _: &mut Board) {}
+    /// #     fn draw<'p>(&'p self, _: &mut Picture<'p>) -> Result<(), PictureError> { Ok(()) }
+    /// # }
+    /// use glint_program::Hand;
+    /// use glint_program::core::fixed::{Q32_32, Turns};
+    /// use glint_program::core::gesture::Pose;
+    ///
+    /// let mut host = Host::<Watcher>::start();
+    /// let pose = Pose { theta: Turns(0), phi: Turns::QUARTER, r: Q32_32::lit("3") };
+    /// host.show_hand(Some(Hand { pose, is_seen: true }));
+    /// assert_eq!(host.board().hand().map(|hand| hand.pose), Some(pose));
+    /// host.show_hand(None);
+    /// assert!(host.board().hand().is_none());
+    /// ```
     pub fn show_hand(&mut self, hand: Option<Hand>) {
         self.board.set_hand(hand);
     }
 
     /// Sends bytes over the serial line. Bytes beyond 256 for a picture are dropped.
+    ///
+    /// ```
+    /// # use glint_program::{Picture, PictureError, Program, host::Host};
+    /// use glint_program::Board;
+    ///
+    /// # struct Echo;
+    /// # impl Program for Echo {
+    /// #     fn start(_: &mut Board) -> Self { Self }
+    /// fn update(&mut self, board: &mut Board) {
+    ///     board.show_number(board.received().len() as u64);
+    /// }
+    /// #     fn draw<'p>(&'p self, _: &mut Picture<'p>) -> Result<(), PictureError> { Ok(()) }
+    /// # }
+    /// # use glint_program::core::digits::segments;
+    /// let mut host = Host::<Echo>::start();
+    /// host.send(b"three");
+    /// host.run(1)?;
+    /// assert_eq!(host.board().digits.map(|all| all[7]), Some(segments('5')));
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
     pub fn send(&mut self, bytes: &[u8]) {
         for &byte in bytes {
             let _ = self.board.received_mut().push(byte);
@@ -138,6 +258,15 @@ impl<P: Program> Host<P> {
     }
 
     /// Updates and draws `count` pictures, 1/60 s apart.
+    ///
+    /// ```
+    /// # use glint_program::host::Host;
+    /// let mut host = Host::<()>::start();
+    /// host.run(2)?;
+    /// host.run(3)?;
+    /// assert_eq!(host.board().pictures(), 5);
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
     ///
     /// # Errors
     /// [`HostError`] for a picture that cannot be drawn.
@@ -173,36 +302,109 @@ impl<P: Program> Host<P> {
     }
 
     /// The colours of the last picture: RGB565, row by row.
+    ///
+    /// ```
+    /// # use glint_program::host::Host;
+    /// use glint_program::core::colour::Rgb565;
+    ///
+    /// let mut host = Host::<()>::start();
+    /// host.run(1)?;
+    /// // The default background is a gradient of greys, as grey as RGB565 can be.
+    /// let [red, green, blue] = Rgb565(host.picture()[0]).to_rgb888();
+    /// assert!(red.abs_diff(green) < 8 && blue.abs_diff(green) < 8);
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
     #[must_use]
     pub fn picture(&self) -> &[u16] {
         &self.picture
     }
 
     /// Width and height of the last picture.
+    ///
+    /// ```
+    /// # use glint_program::host::Host;
+    /// let mut host = Host::<()>::start();
+    /// host.run(1)?;
+    /// assert_eq!(host.size().pixels(), [640, 360]);
+    /// assert_eq!(host.picture().len(), host.size().pixel_count());
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
     #[must_use]
     pub const fn size(&self) -> Size {
         self.size
     }
 
     /// The board, with its output.
+    ///
+    /// ```
+    /// # use glint_program::host::Host;
+    /// let mut host = Host::<()>::start();
+    /// host.run(1)?;
+    /// assert_eq!(host.board().leds, 0);
+    /// assert_eq!(host.board().digits, None, "a board shows the rate of drawing");
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
     #[must_use]
     pub const fn board(&self) -> &Board {
         &self.board
     }
 
     /// The program.
+    ///
+    /// ```
+    /// # use glint_program::{Board, Picture, PictureError, Program};
+    /// use glint_program::host::Host;
+    ///
+    /// # struct Life { cells: Vec<bool> }
+    /// # impl Program for Life {
+    /// #     fn start(_: &mut Board) -> Self { Self { cells: vec![true, false] } }
+    /// #     fn update(&mut self, _: &mut Board) { self.cells.rotate_left(1); }
+    /// #     fn draw<'p>(&'p self, _: &mut Picture<'p>) -> Result<(), PictureError> { Ok(()) }
+    /// # }
+    /// let mut host = Host::<Life>::start();
+    /// host.run(1)?;
+    /// assert_eq!(host.program().cells, [false, true]);
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
     #[must_use]
     pub const fn program(&self) -> &P {
         &self.program
     }
 
     /// All log text so far.
+    ///
+    /// ```
+    /// # use glint_program::{Board, Picture, PictureError, Program};
+    /// use glint_program::host::Host;
+    ///
+    /// # struct Talker;
+    /// # impl Program for Talker {
+    /// #     fn start(board: &mut Board) -> Self { board.log(format_args!("ready")); Self }
+    /// #     fn update(&mut self, _: &mut Board) {}
+    /// #     fn draw<'p>(&'p self, _: &mut Picture<'p>) -> Result<(), PictureError> { Ok(()) }
+    /// # }
+    /// let mut host = Host::<Talker>::start();
+    /// assert_eq!(host.log(), "", "lines arrive with the first picture");
+    /// host.run(1)?;
+    /// assert_eq!(host.log().lines().count(), 1);
+    /// assert!(host.log().trim_end().ends_with("ready"));
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
     #[must_use]
     pub fn log(&self) -> &str {
         &self.log
     }
 
     /// The last picture as a file in the portable pixmap format (PPM, 8 bits a channel).
+    ///
+    /// ```
+    /// # use glint_program::host::Host;
+    /// let mut host = Host::<()>::start();
+    /// host.run(1)?;
+    /// let file = host.pixmap();
+    /// assert!(file.starts_with(b"P6\n640 360\n255\n"));
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
     #[must_use]
     pub fn pixmap(&self) -> Vec<u8> {
         let mut file =
@@ -211,6 +413,17 @@ impl<P: Program> Host<P> {
             file.extend(glint_core::colour::Rgb565(colour).to_rgb888());
         }
         file
+    }
+}
+
+/// The empty program, which shows the background. `Host<()>` is a board without a program, for tests of functions that take a board.
+impl Program for () {
+    fn start(_: &mut Board) -> Self {}
+
+    fn update(&mut self, _: &mut Board) {}
+
+    fn draw<'p>(&'p self, _: &mut Picture<'p>) -> Result<(), PictureError> {
+        Ok(())
     }
 }
 
@@ -225,6 +438,14 @@ impl Pixels for Colours<'_> {
 
 /// The main function of a program on a host: draws 60 pictures, or the number in the first argument, prints the log, and writes the last
 /// picture to the file in the second argument.
+///
+/// ```
+/// use std::process::ExitCode;
+///
+/// fn main() -> ExitCode {
+///     glint_program::host::main::<()>()
+/// }
+/// ```
 #[must_use]
 pub fn main<P: Program>() -> ExitCode {
     let mut arguments = std::env::args().skip(1);

@@ -4,11 +4,10 @@
 //! [`Picture`]. [`run!`] makes a binary of it: on the soft core the program has the machine for itself; on a host it draws by the model,
 //! without a window, for tests ([`host`]).
 //!
-//! ```no_run
+//! ```
 //! use glint_program::{Board, Picture, PictureError, Program};
 //! use glint_program::core::fixed::{Q32_32, Turns};
 //! use glint_program::core::camera::View;
-//! use glint_program::core::field::Field;
 //! use glint_program::core::matrix::Matrix;
 //! use glint_program::core::mesh::Mesh;
 //!
@@ -60,7 +59,7 @@ pub mod lines;
 mod picture;
 mod program;
 pub mod shapes;
-pub mod soft_core;
+mod soft_core;
 
 #[cfg(not(target_arch = "riscv32"))]
 pub mod host;
@@ -114,7 +113,7 @@ pub use program::Program;
 /// let start = glint_program::cycles();
 /// let root = std::hint::black_box(1_000_000_u32).isqrt();
 /// let taken = glint_program::cycles() - start;
-/// # let _ = (root, taken);
+/// # assert_eq!((root, taken), (1000, 0));
 /// ```
 #[must_use]
 pub fn cycles() -> u64 {
@@ -125,6 +124,18 @@ pub fn cycles() -> u64 {
 }
 
 /// Makes the binary of a [`Program`], which is given as a type.
+///
+/// ```
+/// # use glint_program::{Board, Picture, PictureError, Program};
+/// # struct Game;
+/// # impl Program for Game {
+/// #     fn start(_: &mut Board) -> Self { Self }
+/// #     fn update(&mut self, _: &mut Board) {}
+/// #     fn draw<'p>(&'p self, _: &mut Picture<'p>) -> Result<(), PictureError> { Ok(()) }
+/// # }
+/// glint_program::run!(Game);
+/// # assert_eq!(main(), std::process::ExitCode::SUCCESS);
+/// ```
 #[macro_export]
 macro_rules! run {
     ($program:ty) => {

@@ -24,6 +24,24 @@ impl<const N: usize> Lines<N> {
     const FIXED: usize = 4;
 
     /// An empty list, seen by this eye through this window.
+    ///
+    /// ```
+    /// use glint_program::core::fixed::Q5_11;
+    /// use glint_program::core::wireframe::{Viewing, Window};
+    /// use glint_program::lines::Lines;
+    ///
+    /// /// An eye on the z axis, and a window with the shape of a picture.
+    /// const VIEWING: Viewing = Viewing {
+    ///     eye: [Q5_11::ZERO, Q5_11::ZERO, Q5_11::lit("8")],
+    ///     plane: Q5_11::lit("4"),
+    ///     window: Window {
+    ///         low: [Q5_11::lit("-4"), Q5_11::lit("-2.25")],
+    ///         high: [Q5_11::lit("4"), Q5_11::lit("2.25")],
+    ///     },
+    /// };
+    /// let lines = Lines::<64>::new(VIEWING);
+    /// assert_eq!(*lines.program().unwrap().viewing(), VIEWING);
+    /// ```
     pub fn new(viewing: Viewing) -> Self {
         const { assert!(N > Self::FIXED, "a list of lines needs more than 4 words") };
         let mut words = heapless::Vec::new();
@@ -41,12 +59,35 @@ impl<const N: usize> Lines<N> {
     }
 
     /// Removes all segments.
+    ///
+    /// ```
+    /// # use glint_program::core::{fixed::Q5_11, wireframe::{CUBE, Program}};
+    /// # let viewing = *Program::new_checked(CUBE.as_flattened()).unwrap().viewing();
+    /// # let segment = [[Q5_11::ZERO; 3], [Q5_11::ONE; 3]];
+    /// use glint_program::lines::Lines;
+    ///
+    /// let mut lines = Lines::<16>::new(viewing);
+    /// lines.add(segment);
+    /// lines.clear();
+    /// assert_eq!(lines.program().unwrap().segment_count(), 0);
+    /// ```
     pub fn clear(&mut self) {
         self.words.truncate(Self::FIXED);
         self.put_last(Instruction::End);
     }
 
     /// Adds a segment. Returns whether there was room for it.
+    ///
+    /// ```
+    /// # use glint_program::core::{fixed::Q5_11, wireframe::{CUBE, Program}};
+    /// # let viewing = *Program::new_checked(CUBE.as_flattened()).unwrap().viewing();
+    /// # let segment = [[Q5_11::ZERO; 3], [Q5_11::ONE; 3]];
+    /// use glint_program::lines::Lines;
+    ///
+    /// let mut lines = Lines::<6>::new(viewing);
+    /// assert!(lines.add(segment) && lines.add(segment));
+    /// assert!(!lines.add(segment), "the list is full");
+    /// ```
     pub fn add(&mut self, segment: Segment) -> bool {
         if self.words.is_full() {
             return false;
@@ -65,6 +106,18 @@ impl<const N: usize> Lines<N> {
     }
 
     /// The list as a program, for [`Picture::wireframe`](crate::Picture::wireframe).
+    ///
+    /// ```
+    /// use glint_program::core::fixed::Q5_11;
+    /// use glint_program::core::wireframe::{Viewing, Window};
+    /// use glint_program::lines::Lines;
+    ///
+    /// let [zero, one] = [Q5_11::ZERO, Q5_11::ONE];
+    /// let window = Window { low: [-one; 2], high: [one; 2] };
+    /// let seen_from = |z| Lines::<8>::new(Viewing { eye: [zero, zero, z], plane: one, window });
+    /// assert!(seen_from(one + one).program().is_ok());
+    /// assert!(seen_from(zero).program().is_err(), "the eye is behind the view plane");
+    /// ```
     ///
     /// # Errors
     /// [`ProgramError`] for an eye that is not before its view plane, or for a window without area.

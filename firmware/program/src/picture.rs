@@ -19,9 +19,37 @@ use glint_scene::{Defaults, Sphere};
 use heapless::Vec;
 
 /// Largest number of rectangles of a picture.
+///
+/// ```
+/// /// Whether each character of a text, except spaces, can be a rectangle of one picture.
+/// fn fits(text: &str) -> bool {
+///     text.split(' ').map(str::len).sum::<usize>() <= glint_program::MAX_RECTANGLES
+/// }
+/// assert!(fits("game over") && !fits(&"x".repeat(129)));
+/// ```
 pub const MAX_RECTANGLES: usize = 128;
 
 /// Reason why a picture cannot be described.
+///
+/// ```
+/// # use glint_program::core::{matrix::Matrix, mesh::Mesh};
+/// # use glint_program::{Board, Program, host::Host};
+/// use glint_program::{Picture, PictureError};
+///
+/// # struct Crowd(Mesh<'static>);
+/// # impl Program for Crowd {
+/// #     fn start(board: &mut Board) -> Self { Self(board.cube()) }
+/// #     fn update(&mut self, _: &mut Board) {}
+/// fn draw<'p>(&'p self, picture: &mut Picture<'p>) -> Result<(), PictureError> {
+///     for _ in 0..17 {
+///         picture.mesh(self.0, Matrix::IDENTITY)?;
+///     }
+///     Ok(())
+/// }
+/// # }
+/// let error = Host::<Crowd>::start().run(1).unwrap_err();
+/// assert_eq!(error.to_string(), "picture: expected at most 16 meshes in a picture");
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub enum PictureError {
     /// More meshes than [`MAX_OBJECTS`].
@@ -98,20 +126,31 @@ enum Main<'p> {
 /// use glint_program::core::light::Background;
 /// use glint_program::core::matrix::{Axis, Matrix};
 /// use glint_program::core::camera::View;
-/// use glint_program::core::mesh::Mesh;
+/// # use glint_program::core::{colour::Rgb565, mesh::Mesh, shape::Shape};
+/// # use glint_program::{Board, Program, host::Host};
 /// use glint_program::{Picture, PictureError};
 ///
+/// # struct Two { mesh: Mesh<'static> }
+/// # impl Program for Two {
+/// #     fn start(board: &mut Board) -> Self { Self { mesh: board.shape(Shape::Sphere) } }
+/// #     fn update(&mut self, _: &mut Board) {}
 /// /// Two copies of a mesh in fog, one of them turned and twice as large.
-/// fn draw<'p>(mesh: Mesh<'p>, picture: &mut Picture<'p>) -> Result<(), PictureError> {
+/// fn draw<'p>(&'p self, picture: &mut Picture<'p>) -> Result<(), PictureError> {
 ///     picture.view = View::spherical(Q32_32::lit("4"), Turns(0), Turns::QUARTER)?;
 ///     picture.appearance.background = Some(Background::Sky);
 ///     picture.appearance.fog = U4_28::lit("0.2");
 ///     let right = Matrix::translation([Q8_24::ZERO, Q8_24::lit("1.2"), Q8_24::ZERO])?;
-///     picture.mesh(mesh, right)?;
+///     picture.mesh(self.mesh, right)?;
 ///     let large = Matrix::scale([Q8_24::lit("2"); 3])?;
-///     picture.mesh(mesh, large.turned(Axis::Z, Turns::from_degrees(Q32_32::lit("30")))?)?;
+///     picture.mesh(self.mesh, large.turned(Axis::Z, Turns::from_degrees(Q32_32::lit("30")))?)?;
 ///     Ok(())
 /// }
+/// # }
+/// # let mut host = Host::<Two>::start();
+/// # host.run(1)?;
+/// # let row = &host.picture()[180 * 640..][..640];
+/// # assert!(row[320] != row[0] && row[440] != row[0] && row[200] == row[0]);
+/// # Ok::<(), glint_program::host::HostError>(())
 /// ```
 pub struct Picture<'p> {
     /// The camera. Lines have their own.
@@ -153,6 +192,31 @@ impl<'p> Picture<'p> {
     /// Adds a mesh at a place in the world. The result has its further options: a colour in place of its own, shading, culling. At equal
     /// depths a later mesh covers an earlier one. A mesh in a [field](Self::field) stands at the origin; its matrix is not used.
     ///
+    /// ```
+    /// # use glint_program::core::mesh::Mesh;
+    /// # use glint_program::{Board, Program, host::Host};
+    /// use glint_program::core::colour::Rgb565;
+    /// use glint_program::core::matrix::{Axis, Matrix};
+    /// use glint_program::core::fixed::Turns;
+    /// use glint_program::{Picture, PictureError};
+    ///
+    /// # struct Red(Mesh<'static>);
+    /// # impl Program for Red {
+    /// #     fn start(board: &mut Board) -> Self { Self(board.cube()) }
+    /// #     fn update(&mut self, _: &mut Board) {}
+    /// fn draw<'p>(&'p self, picture: &mut Picture<'p>) -> Result<(), PictureError> {
+    ///     let cube = picture.mesh(self.0, Matrix::rotation(Axis::Z, Turns::QUARTER))?;
+    ///     cube.colour = Some(Rgb565::from_rgb888([0xff, 0, 0]));
+    ///     Ok(())
+    /// }
+    /// # }
+    /// # let mut host = Host::<Red>::start();
+    /// # host.run(1)?;
+    /// # let middle = Rgb565(host.picture()[180 * 640 + 320]).to_rgb888();
+    /// # assert!(middle[0] > 0x40 && middle[1..] == [0, 0]);
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
+    ///
     /// # Errors
     /// [`PictureError::Meshes`] for too many meshes.
     pub fn mesh(&mut self, mesh: Mesh<'p>, place: Matrix) -> Result<&mut Object<'p>, PictureError> {
@@ -169,14 +233,26 @@ impl<'p> Picture<'p> {
     /// Shows a distance field, with rays of this precision.
     ///
     /// ```
+    /// # use glint_program::{Board, Program, host::Host};
     /// use glint_program::core::field::Field;
+    /// use glint_program::core::light::Background;
     /// use glint_program::core::quality::Quality;
     /// use glint_program::{Picture, PictureError};
     ///
-    /// fn draw<'p>(sponge: &'p Field, picture: &mut Picture<'p>) -> Result<(), PictureError> {
-    ///     picture.field(sponge, Quality::Balanced)
+    /// # struct Sponge { field: Field }
+    /// # impl Program for Sponge {
+    /// #     fn start(_: &mut Board) -> Self { Self { field: Field::parse("menger:3").unwrap() } }
+    /// #     fn update(&mut self, _: &mut Board) {}
+    /// fn draw<'p>(&'p self, picture: &mut Picture<'p>) -> Result<(), PictureError> {
+    ///     picture.appearance.background = Some(Background::White);
+    ///     picture.field(&self.field, Quality::Balanced)
     /// }
-    /// assert!(Field::parse("menger:3").is_ok());
+    /// # }
+    /// # let mut host = Host::<Sponge>::start();
+    /// # host.run(1)?;
+    /// # let [corner, middle] = [0, 180 * 640 + 320].map(|place| host.picture()[place]);
+    /// # assert!(corner == 0xffff && middle != 0xffff);
+    /// # Ok::<(), glint_program::host::HostError>(())
     /// ```
     ///
     /// # Errors
@@ -187,6 +263,27 @@ impl<'p> Picture<'p> {
 
     /// Shows the edges of a mesh.
     ///
+    /// ```
+    /// # use glint_program::core::mesh::Mesh;
+    /// # use glint_program::{Board, Program, host::Host};
+    /// use glint_program::core::picture::Edges;
+    /// use glint_program::{Picture, PictureError};
+    ///
+    /// # struct Drawing(Mesh<'static>);
+    /// # impl Program for Drawing {
+    /// #     fn start(board: &mut Board) -> Self { Self(board.cube()) }
+    /// #     fn update(&mut self, _: &mut Board) {}
+    /// fn draw<'p>(&'p self, picture: &mut Picture<'p>) -> Result<(), PictureError> {
+    ///     picture.edges(self.0, Edges::Hidden)
+    /// }
+    /// # }
+    /// # let mut host = Host::<Drawing>::start();
+    /// # host.run(1)?;
+    /// # let colours = host.picture().iter().collect::<std::collections::BTreeSet<_>>();
+    /// # assert!(colours.len() > 1, "lines before the background");
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
+    ///
     /// # Errors
     /// [`PictureError::Subjects`] if the picture shows something else.
     pub fn edges(&mut self, mesh: Mesh<'p>, edges: Edges) -> Result<(), PictureError> {
@@ -194,6 +291,26 @@ impl<'p> Picture<'p> {
     }
 
     /// Shows lines, moved to a pose.
+    ///
+    /// ```
+    /// # use glint_program::{Board, Program, host::Host};
+    /// use glint_program::core::wireframe::{self, CUBE, Motion};
+    /// use glint_program::{Picture, PictureError};
+    ///
+    /// # struct Cube;
+    /// # impl Program for Cube {
+    /// #     fn start(_: &mut Board) -> Self { Self }
+    /// #     fn update(&mut self, _: &mut Board) {}
+    /// fn draw<'p>(&'p self, picture: &mut Picture<'p>) -> Result<(), PictureError> {
+    ///     let lines = wireframe::Program::new_checked(CUBE.as_flattened())?;
+    ///     picture.wireframe(lines, Motion::default().pose())
+    /// }
+    /// # }
+    /// # let mut host = Host::<Cube>::start();
+    /// # host.run(1)?;
+    /// # assert!(host.picture().iter().any(|&colour| colour != 0));
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
     ///
     /// # Errors
     /// [`PictureError::Subjects`] if the picture shows something else.
@@ -218,11 +335,22 @@ impl<'p> Picture<'p> {
     /// ```
     /// use glint_program::core::colour::Rgb565;
     /// use glint_program::core::font::Font;
+    /// # use glint_program::{Board, Program, host::Host};
     /// use glint_program::{Picture, PictureError};
     ///
-    /// fn draw<'p>(font: &Font<'p>, picture: &mut Picture<'p>) -> Result<(), PictureError> {
-    ///     font.line("ready", [16, 16], 2, Rgb565::WHITE).try_for_each(|character| picture.rectangle(character))
+    /// # struct Title { font: Font<'static> }
+    /// # impl Program for Title {
+    /// #     fn start(_: &mut Board) -> Self { Self { font: Font::draw(vec![0; Font::BYTES].leak()).unwrap() } }
+    /// #     fn update(&mut self, _: &mut Board) {}
+    /// fn draw<'p>(&'p self, picture: &mut Picture<'p>) -> Result<(), PictureError> {
+    ///     let mut characters = self.font.line("ready", [16, 16], 2, Rgb565::WHITE);
+    ///     characters.try_for_each(|character| picture.rectangle(character))
     /// }
+    /// # }
+    /// # let mut host = Host::<Title>::start();
+    /// # host.run(1)?;
+    /// # assert!(host.picture().contains(&Rgb565::WHITE.0));
+    /// # Ok::<(), glint_program::host::HostError>(())
     /// ```
     ///
     /// # Errors

@@ -10,6 +10,17 @@ use glint_scene::CUBE;
 use crate::cube;
 
 /// The built-in meshes, and memory for shapes that have not been made.
+///
+/// ```
+/// # let memory = vec![0; 6 * glint_program::core::shape::MAX_BYTES].leak();
+/// use glint_program::core::shape::Shape;
+/// use glint_program::shapes::Shapes;
+///
+/// let mut shapes = Shapes::new(memory)?;
+/// let torus = shapes.shape(Shape::Torus).expect("there is memory for each shape");
+/// assert_eq!(shapes.made("torus"), Some(torus));
+/// # Ok::<(), glint_program::core::deviation::Deviation>(())
+/// ```
 pub struct Shapes {
     cube: Mesh<'static>,
     shapes: [Option<Mesh<'static>>; Shape::ALL.len()],
@@ -18,6 +29,16 @@ pub struct Shapes {
 
 impl Shapes {
     /// The built-in meshes, with `memory` for the shapes, aligned to 16 bytes.
+    ///
+    /// ```
+    /// use glint_program::core::shape::{MAX_BYTES, Shape};
+    /// use glint_program::shapes::Shapes;
+    ///
+    /// let memory = vec![0; MAX_BYTES * Shape::ALL.len()].leak();
+    /// let mut shapes = Shapes::new(memory)?;
+    /// assert!(Shape::ALL.iter().all(|&shape| shapes.shape(shape).is_some()));
+    /// # Ok::<(), glint_program::core::deviation::Deviation>(())
+    /// ```
     ///
     /// # Errors
     /// [`Deviation`] for a damaged cube.
@@ -30,16 +51,35 @@ impl Shapes {
     }
 
     /// The cube.
+    ///
+    /// ```
+    /// let shapes = glint_program::shapes::Shapes::new(&mut [])?;
+    /// assert_eq!(shapes.cube().triangle_count(), 12);
+    /// # Ok::<(), glint_program::core::deviation::Deviation>(())
+    /// ```
     pub const fn cube(&self) -> Mesh<'static> {
         self.cube
     }
 
     /// Names of all built-in meshes.
+    ///
+    /// ```
+    /// let names: Vec<_> = glint_program::shapes::Shapes::names().collect();
+    /// assert_eq!(names[..3], ["cube", "sphere", "torus"]);
+    /// ```
     pub fn names() -> impl Iterator<Item = &'static str> {
         [CUBE].into_iter().chain(Shape::NAMES)
     }
 
     /// The built-in mesh with this name.
+    ///
+    /// ```
+    /// # let memory = vec![0; 6 * glint_program::core::shape::MAX_BYTES].leak();
+    /// let mut shapes = glint_program::shapes::Shapes::new(memory)?;
+    /// assert!(shapes.named("crate").is_some_and(|mesh| mesh.has_textures()));
+    /// assert!(shapes.named("teapot").is_none());
+    /// # Ok::<(), glint_program::core::deviation::Deviation>(())
+    /// ```
     pub fn named(&mut self, name: &str) -> Option<Mesh<'static>> {
         if name == CUBE {
             return Some(self.cube);
@@ -49,6 +89,15 @@ impl Shapes {
     }
 
     /// The built-in mesh with this name, if it has been made.
+    ///
+    /// ```
+    /// # let memory = vec![0; 6 * glint_program::core::shape::MAX_BYTES].leak();
+    /// let mut shapes = glint_program::shapes::Shapes::new(memory)?;
+    /// assert!(shapes.made("sphere").is_none());
+    /// let sphere = shapes.named("sphere");
+    /// assert_eq!(shapes.made("sphere"), sphere);
+    /// # Ok::<(), glint_program::core::deviation::Deviation>(())
+    /// ```
     pub fn made(&self, name: &str) -> Option<Mesh<'static>> {
         if name == CUBE {
             return Some(self.cube);
@@ -58,6 +107,16 @@ impl Shapes {
     }
 
     /// A shape, made on first use; `None` if its memory is too small, which the sizes of the memory windows exclude.
+    ///
+    /// ```
+    /// # let memory = vec![0; 6 * glint_program::core::shape::MAX_BYTES].leak();
+    /// use glint_program::core::shape::Shape;
+    ///
+    /// let mut shapes = glint_program::shapes::Shapes::new(memory)?;
+    /// let sphere = shapes.shape(Shape::Sphere).unwrap();
+    /// assert_eq!(sphere.triangle_count(), 1024);
+    /// # Ok::<(), glint_program::core::deviation::Deviation>(())
+    /// ```
     pub fn shape(&mut self, shape: Shape) -> Option<Mesh<'static>> {
         let place = self.shapes.get_mut(shape as usize)?;
         if place.is_none() {
