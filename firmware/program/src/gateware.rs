@@ -15,6 +15,7 @@ mod eyes;
 mod fallback;
 #[allow(unsafe_code)] // Memory that the geometry passes read and write.
 mod geometry;
+mod quarters;
 mod rectangles;
 mod rendered;
 #[allow(unsafe_code)] // Memory that the triangle engine reads and writes.

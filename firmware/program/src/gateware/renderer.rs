@@ -1,14 +1,13 @@
 //! The passes of a frame: the geometry passes, and the raster pass.
 
 mod lines;
+mod quarters;
 mod repeat;
-
-use core::mem;
 
 use glint_core::camera::Projection;
 use glint_core::colour::{Rgb565, Rounding, Shading};
 use glint_core::feature::{EDGES, SKY, TEXTURE, WIREFRAME};
-use glint_core::picture::{Backend, Quarter, Samples, Size};
+use glint_core::picture::{Backend, Samples, Size};
 use glint_engines::raymarch::{ray_counts, set_field, tables};
 use glint_engines::triangle::{average, fog, layout, size_code, sky as sky_of};
 use glint_hal::frequency::Frequency;
@@ -23,6 +22,7 @@ use litex_pac::cpu;
 use super::buffers::{Buffers, Capacity, Projected, address};
 use super::fallback::Fallback;
 use super::geometry::{Cpu, GeometryPasses, Job};
+use super::quarters::Quarters;
 use super::rendered::Rendered;
 use super::watchdog::Watchdog;
 
@@ -44,13 +44,8 @@ enum Stage {
     /// The geometry pass of the lines of a wireframe, or of a mesh's edges.
     Lines,
     Raster,
-}
-
-/// The quarters of a divided frame that have been drawn: their number, and their cost.
-#[derive(Default)]
-struct Quarters {
-    count: usize,
-    rendered: Option<Rendered>,
+    /// Passes of two quarters of a frame.
+    Quarters,
 }
 
 /// Time and counters at the start of a measurement.
@@ -74,7 +69,7 @@ pub struct GatewareRenderer {
     averages: bool,
     /// Layout of the descriptors of this gateware.
     layout: Layout,
-    /// Memory of the frame being drawn, and, in a benchmark, of the next frame.
+    /// Memory of the frame being drawn, and of the next quarter or, in a benchmark, of the next frame.
     buffers: [Buffers; 2],
     /// The projected part of a wireframe.
     projected: Projected,
@@ -88,8 +83,8 @@ pub struct GatewareRenderer {
     stage: Stage,
     /// The quarters of a divided frame that have been drawn.
     quarters: Quarters,
-    /// Constants of the frame being drawn, and, in a benchmark, of the next frame. The index `place` of the functions below
-    /// selects one of them, together with the buffers of the same index.
+    /// Constants of the frame being drawn, and of the next quarter or, in a benchmark, of the next frame. The index `place` of the functions
+    /// below selects one of them, together with the buffers of the same index.
     constants: [FrameConstants; 2],
     geometry: GeometryPasses,
     watchdog: Watchdog,
@@ -199,7 +194,7 @@ impl GatewareRenderer {
 
     /// Whether a frame is in progress.
     pub fn is_busy(&self) -> bool {
-        self.stage != Stage::Idle || self.quarters.count > 0
+        self.stage != Stage::Idle || self.quarters.has_drawn()
     }
 
     /// Whether the pass awaited by [`advance`](Self::advance) has ended.
@@ -209,6 +204,7 @@ impl GatewareRenderer {
             Stage::Project => true,
             Stage::Geometry | Stage::Lines => self.engine.geometry().is_some(),
             Stage::Raster => self.engine.raster().is_some(),
+            Stage::Quarters => self.quarters.is_ready(&self.engine),
         }
     }
 
@@ -237,38 +233,10 @@ impl GatewareRenderer {
         output: &mut Output,
         cpu: &mut Cpu,
     ) -> Option<Result<Rendered, Fallback>> {
-        if frame.is_divided() {
+        if frame.is_divided() && has_lines(frame) {
             return self.advance_quarters(frame, output, cpu);
         }
         self.advance_part(frame, output, cpu)
-    }
-
-    /// Starts or continues the drawing of a divided frame, one quarter after the other.
-    // Not inlined, as it is rarely needed.
-    #[inline(never)]
-    fn advance_quarters(
-        &mut self,
-        frame: &Frame,
-        output: &mut Output,
-        cpu: &mut Cpu,
-    ) -> Option<Result<Rendered, Fallback>> {
-        loop {
-            let quarter = *Quarter::ALL.get(self.quarters.count)?;
-            let drawn = self.advance_part(&Frame { quarter, ..*frame }, output, cpu)?;
-            let Quarters { count, rendered } = mem::take(&mut self.quarters);
-            let sum = match (drawn, rendered) {
-                (Err(fallback), _) => return Some(Err(fallback)),
-                (Ok(drawn), None) => drawn,
-                (Ok(drawn), Some(others)) => drawn.plus(others, 0),
-            };
-            if quarter == Quarter::ALL[Quarter::ALL.len() - 1] {
-                return Some(Ok(sum));
-            }
-            self.quarters = Quarters {
-                count: count + 1,
-                rendered: Some(sum),
-            };
-        }
     }
 
     /// Starts or continues the drawing of a frame, or of its quarter.
@@ -313,6 +281,9 @@ impl GatewareRenderer {
         cpu: &mut Cpu,
     ) -> Option<Result<Rendered, Fallback>> {
         let next = match (self.stage, &frame.subject) {
+            _ if frame.is_divided() && !has_lines(frame) => {
+                return self.step_quarters(frame, output, cpu);
+            }
             (Stage::Idle, _) => return self.begin(frame, output, cpu).err().map(Err),
             (Stage::Project, Subject::Wireframe(wireframe)) if WIREFRAME.is_built => {
                 match self.project(wireframe, frame, 0) {
@@ -337,7 +308,7 @@ impl GatewareRenderer {
                     runs.map(|runs| self.after_geometry(runs, frame))
                 }
             },
-            (Stage::Raster | Stage::Project, _) => match self.engine.raster() {
+            (Stage::Raster | Stage::Project | Stage::Quarters, _) => match self.engine.raster() {
                 None => return self.check_progress(output).err().map(Err),
                 Some(Ok(())) => {
                     self.stage = Stage::Idle;
@@ -501,8 +472,7 @@ impl GatewareRenderer {
     /// Computes the constants of a frame into `self.constants[place]`, and removes the textures of the previous frame. Returns an error if
     /// the engine cannot draw the frame.
     fn update_constants(&mut self, frame: &Frame, place: usize) -> Result<(), Fallback> {
-        let has_lines = matches!(frame.subject, Subject::Wireframe(_) | Subject::Edges(..));
-        if has_lines && !self.draws_lines {
+        if has_lines(frame) && !self.draws_lines {
             return Err(Fallback::NoLineEngine);
         }
         if frame.drawn_samples() == Samples::Four && !self.averages {
@@ -631,6 +601,7 @@ impl GatewareRenderer {
     fn cancel(&mut self, output: &Output, error: Fallback) -> Fallback {
         self.engine.cancel();
         self.stage = Stage::Idle;
+        self.quarters = Quarters::default();
         self.invalidate(output.colour);
         error
     }
@@ -638,4 +609,9 @@ impl GatewareRenderer {
     fn slot(&self, colour: &[u16]) -> bool {
         address(colour) != self.first_frame_buffer
     }
+}
+
+/// Whether the line engine draws the frame or a part of it.
+const fn has_lines(frame: &Frame) -> bool {
+    matches!(frame.subject, Subject::Wireframe(_) | Subject::Edges(..))
 }
