@@ -8,11 +8,11 @@ mod checksums;
 use glint_core::appearance::Appearance;
 use glint_core::camera::{View, ViewError};
 use glint_core::colour::{Rgb565, Shading};
-use glint_core::feature::{EDGES, FIELD, MESH, SPHERES, STEREO, TEXTURE, WIREFRAME};
+use glint_core::feature::{ANTIALIASING, EDGES, FIELD, MESH, SPHERES, STEREO, TEXTURE, WIREFRAME};
 use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, Turns};
 use glint_core::mesh::Mesh;
-use glint_core::picture::{Edges, Size};
+use glint_core::picture::{Edges, Samples, Size};
 use glint_core::quality::Quality;
 use glint_core::rectangle::{Part, Rectangle};
 use glint_core::shape::Shape;
@@ -29,6 +29,8 @@ pub enum TestPicture {
     Triangle,
     /// The torus with smooth shading.
     Smooth,
+    /// The torus with four samples a pixel: averages.
+    Average,
     /// The torus behind rectangles: textures.
     Texture,
     /// The cube of the wireframe simulator: the line engine.
@@ -52,9 +54,10 @@ pub const MESH_SHAPE: Shape = Shape::Torus;
 
 impl TestPicture {
     /// All pictures, in the order of their definition.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Triangle,
         Self::Smooth,
+        Self::Average,
         Self::Texture,
         Self::Line,
         Self::Sponge,
@@ -70,6 +73,7 @@ impl TestPicture {
         match self {
             Self::Triangle => "triangle flat",
             Self::Smooth => "triangle smooth",
+            Self::Average => "triangle average",
             Self::Texture => "triangle texture",
             Self::Line => "line",
             Self::Sponge => "raymarch sponge",
@@ -85,6 +89,7 @@ impl TestPicture {
     pub const fn is_built(self) -> bool {
         match self {
             Self::Triangle | Self::Smooth => MESH.is_built,
+            Self::Average => MESH.is_built && ANTIALIASING.is_built,
             Self::Texture => TEXTURE.is_built,
             Self::Line => WIREFRAME.is_built,
             Self::Sponge | Self::Cubes => FIELD.is_built,
@@ -120,6 +125,10 @@ impl TestPicture {
             _ => View::spherical(Q32_32::lit("2.5"), degrees(40), degrees(65))?,
         };
         let stereo = matches!(self, Self::Stereo | Self::TextureStereo).then_some(EYES);
+        let samples = match self {
+            Self::Average => Samples::Four,
+            _ => Samples::One,
+        };
         let mut memory = Aligned([0; _]);
         let rectangles = match self {
             Self::Texture | Self::TextureLine | Self::TextureStereo if TEXTURE.is_built => {
@@ -130,6 +139,7 @@ impl TestPicture {
         let mut draw = |subject| {
             draw(&Frame {
                 stereo,
+                samples,
                 rectangles: rectangles.as_ref().map_or(&[], |all| all),
                 ..Frame::new(subject, view, Size::W320)
             });
@@ -168,7 +178,9 @@ impl TestPicture {
 
     const fn shading(self) -> Option<Shading> {
         match self {
-            Self::Triangle | Self::Texture | Self::TextureLine => Some(Shading::Flat),
+            Self::Triangle | Self::Average | Self::Texture | Self::TextureLine => {
+                Some(Shading::Flat)
+            }
             Self::Smooth => Some(Shading::Smooth),
             Self::Line
             | Self::Sponge
@@ -185,7 +197,12 @@ impl TestPicture {
             Self::Sponge => Some("menger:3"),
             Self::Cubes | Self::Stereo | Self::TextureStereo => Some("cubes:2,0.4"),
             Self::Spheres => Some("spheres:0,0,0,0.6;0.9,0.1,-0.2,0.35"),
-            Self::Triangle | Self::Smooth | Self::Texture | Self::Line | Self::TextureLine => None,
+            Self::Triangle
+            | Self::Smooth
+            | Self::Average
+            | Self::Texture
+            | Self::Line
+            | Self::TextureLine => None,
         }
     }
 }

@@ -27,7 +27,11 @@ pub(super) const STORED: [u32; {}] = [
 /// The picture of a frame, or of both eyes with the counts of the left one.
 fn drawn(frame: &Frame) -> Picture {
     let Some(eyes) = frame.eyes().unwrap() else {
-        return Picture::of_frame(frame);
+        let mut picture = Picture::of_frame(frame);
+        let mut colour = vec![0; frame.size.pixel_count()];
+        frame.average(&picture.colour, &mut colour, &mut || {});
+        picture.colour = colour;
+        return picture;
     };
     let [mut left, right] = [eyes.left, eyes.right].map(|eye| Picture::of_frame(&eye));
     let words = |colour: &[u16]| {

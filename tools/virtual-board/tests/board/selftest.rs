@@ -13,7 +13,7 @@ use virtual_board::virtual_mpu6050::{Fault, State};
 use virtual_board::{Simulation, Uart};
 
 /// All parts.
-const PARTS: [&str; 20] = [
+const PARTS: [&str; 21] = [
     "identity",
     "clock",
     "cycle counter",
@@ -25,6 +25,7 @@ const PARTS: [&str; 20] = [
     "scan-out",
     "triangle flat",
     "triangle smooth",
+    "triangle average",
     "triangle texture",
     "line",
     "raymarch sponge",
