@@ -12,6 +12,7 @@ mod documents;
 mod firmware;
 mod gateware;
 mod generated;
+mod interface;
 mod modules;
 mod paths;
 mod programs;
@@ -61,6 +62,12 @@ enum Task {
     /// Generate the firmware's built-in scenes from the files of the folder `scenes`
     Scenes {
         /// Write nothing; fail if the generated file is stale
+        #[arg(long)]
+        check: bool,
+    },
+    /// List the public interface of the library of programs; fail if an item has no example in its documentation
+    Interface {
+        /// Write nothing; fail if the interface is not that of the committed list
         #[arg(long)]
         check: bool,
     },
@@ -150,6 +157,7 @@ fn main() -> Result<()> {
             gateware::write_generated(check)
         }
         Task::Scenes { check } => scenes::generate(check),
+        Task::Interface { check } => interface::write(check),
         Task::Firmware {
             board,
             scene,

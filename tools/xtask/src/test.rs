@@ -57,6 +57,7 @@ pub fn test() -> Result<()> {
         web::build(None)?;
         results.add(scenes::generate(true));
         results.add(modules::check());
+        results.add(crate::interface::write(true));
         results.add(cargo("formatting", &["fmt", "--all", "--check"]));
         results.add(linted("clippy", &["check", "--all-targets"]));
         let firmware = ["--package", "glint-firmware", "--features", "peers"];
