@@ -12,7 +12,7 @@ use std::time::Duration;
 use emulated_board::EmulatedBoard;
 use glint_board_api::pace::Clock;
 use glint_board_api::{BoardError, SimulatedBoard};
-use glint_live_page::{Channels, Live, LiveSimulation, Message, Session, Viewer};
+use glint_live_page::{Channels, Live, LiveSimulation, Message, Places, Session, Viewer};
 
 /// Longest time that the board runs before the worker checks for messages from the page; a pass of an engine may take longer.
 const TURN: Duration = Duration::from_millis(8);
@@ -96,6 +96,7 @@ fn opened(firmware: &[u8]) -> Result<Page, BoardError> {
     let board = SimulatedBoard::new(board);
     let live: &mut dyn Live = Box::leak(Box::new(LiveSimulation::new(
         board,
+        Places::default(),
         SAMPLE_PERIOD,
         PageClock,
     )));

@@ -3,24 +3,39 @@
 use crate::error::{FormatError, InputError, quote};
 use crate::formats::read_up_to;
 use glint_core::flash::Image;
-use glint_program_image as image;
+use glint_program_image::{self as image, Places};
 use std::path::Path;
 
 /// Size in bytes of the largest main memory of the supported boards.
 const MEMORY: usize = 128 << 20;
-/// Reads the file at `path`, or standard input: a flat binary, which is checked, or an ELF file, whose memory image is returned.
+
+/// A program for the soft core.
+#[derive(Debug)]
+pub struct Program {
+    /// The memory image.
+    pub image: Vec<u8>,
+    /// The places in its sources, for an ELF file.
+    pub places: Places,
+}
+
+/// Reads the file at `path`, or standard input: a flat binary, which is checked, or an ELF file, which is converted.
 ///
 /// # Errors
 /// The file cannot be read, [`check`] rejects it, or the ELF file is no program for a board of Glint.
-pub fn read(path: &Path) -> Result<Vec<u8>, InputError> {
-    let bytes = read_up_to(path, MEMORY)?;
-    if bytes.starts_with(&image::MAGIC) {
-        return image::of_elf(&bytes, MEMORY as u64).map_err(|found| {
+pub fn read(path: &Path) -> Result<Program, InputError> {
+    let file = read_up_to(path, MEMORY)?;
+    if file.starts_with(&image::MAGIC) {
+        let image = image::of_elf(&file, MEMORY as u64).map_err(|found| {
             FormatError::whole("a program for Glint's boards", found.to_string()).in_path(path)
-        });
+        })?;
+        let places = Places::new(file);
+        return Ok(Program { image, places });
     }
-    check(&bytes, path)?;
-    Ok(bytes)
+    check(&file, path)?;
+    Ok(Program {
+        image: file,
+        places: Places::default(),
+    })
 }
 
 /// Checks the bytes of the file at `path`.

@@ -8,6 +8,7 @@ use glint::program;
 use glint_board_api::{Frame, Uart, built};
 use glint_core::colour::Rgb565;
 use glint_core::digits;
+use glint_live_page::Places;
 use litex_pac::BUILD_ID;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -32,7 +33,9 @@ fn elf(name: &str) -> Vec<u8> {
 /// The memory image of a program.
 fn image(name: &str) -> Vec<u8> {
     let file = format!("firmware/programs/{name}.elf");
-    program::read(&built::find(&file, "cargo xtask programs").unwrap()).unwrap()
+    program::read(&built::find(&file, "cargo xtask programs").unwrap())
+        .unwrap()
+        .image
 }
 
 fn start(name: &str) -> SimulatedBoard<EmulatedBoard> {
@@ -210,18 +213,25 @@ fn the_oscilloscope_draws_gravity_and_holds_its_picture() {
 #[test]
 fn faults_are_told_by_name_and_enter_restarts() {
     let mut board = start("faults");
-    for (switches, fault) in [
-        (1, "panicked at firmware/program/../examples/faults.rs"),
+    let mut places = Places::new(elf("faults"));
+    for (switches, fault, place) in [
+        (1, "panicked at firmware/program/../examples/faults.rs", ""),
         (
             1 << 1,
             "no picture for 10 seconds: an endless loop? at 0x40",
+            "examples/faults.rs:",
         ),
-        (1 << 2, "stack overflow: "),
+        (1 << 2, "stack overflow: ", " is in "),
         (
             1 << 3,
             "picture: matrix row 1: (0, 0, 0): expected a length",
+            "",
         ),
-        (1 << 4, "trap: illegal instruction (mcause 2) at 0x40"),
+        (
+            1 << 4,
+            "trap: illegal instruction (mcause 2) at 0x40",
+            "examples/faults.rs:",
+        ),
     ] {
         board
             .inner()
@@ -233,6 +243,9 @@ fn faults_are_told_by_name_and_enter_restarts() {
             .read_until("press Enter to restart\r\n", LIMIT);
         let text = text.unwrap();
         assert!(text.contains(fault), "expected {fault:?} in {text}");
+        let found = places.hear(text.as_bytes()).unwrap_or_default();
+        assert!(found.contains(place), "expected {place:?} in {found:?}");
+        assert_eq!(found.is_empty(), place.is_empty(), "{found}");
         board.inner().set_switches(0);
         board.inner().uart_write(b"\r");
     }
@@ -392,7 +405,7 @@ fn a_new_project_shows_its_program_in_the_page() {
 
     let elf = Path::new(env!("CARGO_TARGET_TMPDIR"));
     let elf = elf.join("riscv32im-unknown-none-elf/debug/hello");
-    let mut board = board::emulated(&program::read(&elf).unwrap()).unwrap();
+    let mut board = board::emulated(&program::read(&elf).unwrap().image).unwrap();
     let greeting = "hello: hold button 0 to stop the cube\r\n";
     board.inner().read_until(greeting, LIMIT).unwrap();
     let turning = run_for(&mut board, 0, 30);

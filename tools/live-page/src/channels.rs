@@ -8,6 +8,7 @@ use crate::message::ToPage;
 use crate::motion::Motion;
 use crate::orbit::Drag;
 use glint_core::matrix::Axis;
+use glint_program_image::Places;
 use std::mem::{Discriminant, discriminant};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -41,6 +42,8 @@ pub struct Program {
     pub name: String,
     /// Its memory image.
     pub image: Vec<u8>,
+    /// The places in its sources.
+    pub places: Places,
 }
 
 /// A mesh or a texture to upload.

@@ -33,6 +33,7 @@ pub mod session;
 pub mod viewer;
 
 pub use channels::Channels;
+pub use glint_program_image::Places;
 pub use hub::Hub;
 pub use live::{Live, LiveSimulation};
 pub use message::Message;

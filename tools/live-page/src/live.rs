@@ -7,6 +7,7 @@ use glint_board_api::pace::{Clock, Pace};
 use glint_board_api::{
     Board, BoardError, Frame, Memory, SimulatedBoard, Simulation, read_in_steps,
 };
+use glint_program_image::Places;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -37,9 +38,14 @@ pub trait Live: Board {
     ///
     /// # Errors
     /// The image exceeds main memory, or this board takes no program from the page.
-    fn boot(&mut self, _program: &[u8]) -> Result<(), BoardError> {
+    fn boot(&mut self, _program: &[u8], _places: Places) -> Result<(), BoardError> {
         let error = "a board on a serial port takes a program from `glint flash FILE --board PORT`";
         Err(BoardError::simulation(error))
+    }
+
+    /// Takes output of the program. Returns the place in its sources when it has ended with a message about an address.
+    fn hear(&mut self, _output: &[u8]) -> Option<String> {
+        None
     }
 
     /// Interval of the measurements on the console.
@@ -62,15 +68,21 @@ pub struct LiveSimulation<S: ?Sized, C> {
     motion: Arc<Motion>,
     hold: Hold,
     pace: Pace<C>,
+    places: Places,
     /// The number of the last polled vertical blanking, and the picture shown at that time.
     shown: (u64, Option<Frame>),
 }
 
 impl<S: Simulation + ?Sized, C: Clock> LiveSimulation<S, C> {
-    /// Wraps a board whose firmware is running, and connects a motion sensor and a camera to it.
+    /// Wraps a board whose firmware, with these places in its sources, is running, and connects a motion sensor and a camera to it.
     /// `clock` limits the board to real time. `sample_period` is the interval of the measurements
     /// on its console.
-    pub fn new(mut board: SimulatedBoard<S>, sample_period: Duration, clock: C) -> Self {
+    pub fn new(
+        mut board: SimulatedBoard<S>,
+        places: Places,
+        sample_period: Duration,
+        clock: C,
+    ) -> Self {
         let motion = Arc::new(Motion::default());
         board.inner().plug(motion.sensor());
         board.inner().plug_image_sensor(motion.camera());
@@ -82,6 +94,7 @@ impl<S: Simulation + ?Sized, C: Clock> LiveSimulation<S, C> {
             motion,
             hold: Hold::default(),
             pace,
+            places,
             shown: (0, None),
         }
     }
@@ -148,8 +161,14 @@ impl<S: Simulation + ?Sized, C: Clock> Live for LiveSimulation<S, C> {
         Ok(Some(frame))
     }
 
-    fn boot(&mut self, program: &[u8]) -> Result<(), BoardError> {
-        self.board.inner().boot(program)
+    fn boot(&mut self, program: &[u8], places: Places) -> Result<(), BoardError> {
+        self.board.inner().boot(program)?;
+        self.places = places;
+        Ok(())
+    }
+
+    fn hear(&mut self, output: &[u8]) -> Option<String> {
+        self.places.hear(output)
     }
 
     fn sample_period(&self) -> Duration {

@@ -226,9 +226,13 @@ impl<'a> Session<'a> {
     }
 
     /// Starts a program in place of the running one. The pages get its lists, which are empty for a program without a prompt.
-    fn start_program(&mut self, program: &Program) -> Result<(), BoardError> {
-        let Program { name, image } = program;
-        if let Err(error) = self.board.board.boot(image) {
+    fn start_program(&mut self, program: Program) -> Result<(), BoardError> {
+        let Program {
+            name,
+            image,
+            places,
+        } = program;
+        if let Err(error) = self.board.board.boot(&image, places) {
             self.hub.notify(format!("{name}: {error}"), true);
             return Ok(());
         }
@@ -261,7 +265,7 @@ impl<'a> Session<'a> {
                 Some(Request::Command(line)) => self.type_line(&line),
                 Some(Request::Choose(list, name)) => self.choose(list, &name),
                 Some(Request::Interrupt) => self.board.write(INTERRUPT),
-                Some(Request::Start(program)) => self.start_program(&program),
+                Some(Request::Start(program)) => self.start_program(program),
                 Some(request @ (Request::Help(_) | Request::Picture | Request::Upload(_))) => {
                     self.keep(request);
                     Ok(())
@@ -288,7 +292,7 @@ impl<'a> Session<'a> {
             }
             Some(Request::Picture) => self.ask(send_picture),
             Some(Request::Interrupt) => Ok(()),
-            Some(Request::Start(program)) => self.start_program(&program),
+            Some(Request::Start(program)) => self.start_program(program),
             None => self.use_rest(),
         }
     }
@@ -410,6 +414,9 @@ impl<'a> Session<'a> {
             return Ok(());
         }
         self.hub.send_console(output);
+        if let Some(place) = self.board.board.hear(output) {
+            self.hub.send_console(format!("{place}\r\n").as_bytes());
+        }
         self.end.append(output);
         self.has_prompt |= self.end.ends_with(PROMPT.as_bytes());
         // The page cannot serve a transfer that a user has started on the console, so the session

@@ -59,8 +59,11 @@ impl Sent {
                 let image = image.map_err(|found| {
                     format!("{name}: expected a program for Glint's boards, found {found}")
                 })?;
-                let name = name.clone();
-                Ok(Request::Start(Program { name, image }))
+                Ok(Request::Start(Program {
+                    name: name.clone(),
+                    image,
+                    places: image::Places::new(self.data),
+                }))
             }
             _ => self.converted_model().map(Request::Upload),
         }

@@ -1,5 +1,7 @@
-//! Memory images of programs for the soft core, made from ELF files.
+//! Programs for the soft core: their memory images, and places in their sources, from ELF files.
 #![forbid(unsafe_code)]
+
+mod place;
 
 use std::ops::Range;
 use std::path::Path;
@@ -9,6 +11,8 @@ use litex_pac::memories::{MAIN_RAM, SRAM};
 use object::elf::PT_LOAD;
 use object::read::elf::{ElfFile32, ProgramHeader};
 use object::{Endianness, Object, ObjectSymbol};
+
+pub use place::Places;
 
 /// First bytes of an ELF file.
 pub const MAGIC: [u8; 4] = *b"\x7fELF";

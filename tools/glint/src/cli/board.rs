@@ -14,7 +14,7 @@ use glint::formats::read_up_to;
 use glint::web::{Server, Watched};
 use glint_board_api::pace::SystemClock;
 use glint_core::console::PROMPT;
-use glint_live_page::{Live, LiveSimulation};
+use glint_live_page::{Live, LiveSimulation, Places};
 use rustix::termios::isatty;
 use std::net::SocketAddr;
 use std::os::unix::fs::symlink;
@@ -95,8 +95,9 @@ impl BoardArguments {
                     BoardName::Virtual => Duration::from_secs(2),
                     _ => Duration::from_millis(250),
                 };
-                let board = self.line.start(simulated)?;
-                Box::new(LiveSimulation::new(board, period, SystemClock::start()))
+                let (board, places) = self.line.start(simulated)?;
+                let clock = SystemClock::start();
+                Box::new(LiveSimulation::new(board, places, period, clock))
             }
         };
         // Before this line a signal ends the program at once.
@@ -118,7 +119,7 @@ impl BoardArguments {
     }
 
     /// Builds the simulated board in its state at power-up.
-    fn simulated(&self) -> anyhow::Result<AnyBoard> {
+    fn simulated(&self) -> anyhow::Result<(AnyBoard, Places)> {
         if !self.has_bios() {
             return self.line.start(&self.board);
         }
@@ -129,21 +130,25 @@ impl BoardArguments {
             board.inner().plug_flash(Flash::new(image));
         }
         show_simulation(board.meter());
-        Ok(board)
+        Ok((board, Places::default()))
     }
 
     fn stay(&self) -> anyhow::Result<()> {
         let ready = self.ready()?;
         // Before this line a signal ends the program at once, also while the program waits for a
         // pipe.
-        let board = self.simulated()?;
+        let (board, mut places) = self.simulated()?;
         let (report, events) = channel();
         let end = report.clone();
         ctrlc::set_handler(move || {
             // Without a receiver the program is already ending.
             let _ = end.send(Event::End);
         })?;
-        let pty = Pty::watched(board, first_prompt(report))?;
+        let mut first_prompt = first_prompt(report);
+        let pty = Pty::watched(board, move |_: &[u8], said: &[u8]| {
+            first_prompt(said);
+            places.hear(said).into_iter().for_each(note);
+        })?;
         let port = pty.path();
         let link = self.pty.as_deref().map(|link| Link::new(link, port));
         let _link = link.transpose()?;
@@ -178,12 +183,12 @@ enum Event {
 }
 
 /// Returns a callback that reports the first prompt in the output of a board.
-fn first_prompt(report: Sender<Event>) -> impl FnMut(&[u8], &[u8]) + Send {
+fn first_prompt(report: Sender<Event>) -> impl FnMut(&[u8]) + Send {
     let longest = PROMPTS.map(<[u8]>::len).into_iter().max().unwrap_or(0);
     // The end of the output, which may be the start of a prompt, and the sender, which is taken
     // when the event is sent.
     let (mut heard, mut report) = (Vec::new(), Some(report));
-    move |_, said| {
+    move |said| {
         if said.is_empty() || report.is_none() {
             return;
         }

@@ -9,12 +9,13 @@ use glint::board::{
 };
 use glint::console::Console;
 use glint::error::{FormatError, InputError, quote};
-use glint::program;
+use glint::program::{self, Program};
 use glint::render::BoardRenderer;
 use glint::scene::Changes;
 use glint_core::colour::Shading;
 use glint_core::picture::{Backend, Samples, Size};
 use glint_core::quality::Quality;
+use glint_live_page::Places;
 use glint_scene::{Defaults, Scene};
 use std::path::PathBuf;
 
@@ -143,20 +144,20 @@ impl LineArguments {
         })
     }
 
-    /// The firmware of simulated boards.
-    pub fn firmware(&self) -> anyhow::Result<Vec<u8>> {
-        Ok(match &self.firmware {
-            Some(path) => program::read(path)?,
-            None => built_firmware(None)?,
-        })
-    }
-
-    /// Starts the simulated board `name`. Its program runs when the board's serial line is read, and need not print a prompt.
-    pub fn start(&self, name: &BoardName) -> anyhow::Result<AnyBoard> {
-        let board = board::simulated(name, Some(&self.firmware()?))?;
+    /// Starts the simulated board `name`. Its program runs when the board's serial line is read, and need not print a prompt. Returns the
+    /// places in the program's sources, too.
+    pub fn start(&self, name: &BoardName) -> anyhow::Result<(AnyBoard, Places)> {
+        let (image, places) = match &self.firmware {
+            Some(path) => {
+                let Program { image, places } = program::read(path)?;
+                (image, places)
+            }
+            None => (built_firmware(None)?, Places::default()),
+        };
+        let board = board::simulated(name, Some(&image))?;
         let board = board.context("expected a simulated board")?;
         show_simulation(board.meter());
-        Ok(board)
+        Ok((board, places))
     }
 
     /// Opens the board `name` like [`board`](Self::board), but returns the board's type too.
@@ -165,7 +166,7 @@ impl LineArguments {
         if let BoardName::Serial(port) = name {
             return Ok(Opened::Serial(self.serial_board(port)?));
         }
-        let mut board = self.start(name)?;
+        let (mut board, _) = self.start(name)?;
         let _starting = spinner("the board starts");
         Console::new(&mut board).greet()?;
         Ok(Opened::Simulated(board))

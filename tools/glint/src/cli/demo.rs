@@ -111,7 +111,7 @@ impl DemoArguments {
             .map(|name| Ok((name, load(name, Options::default())?)));
         let models = models.collect::<anyhow::Result<Vec<_>>>()?;
         let firmware = match &self.firmware {
-            Some(path) => program::read(path)?,
+            Some(path) => program::read(path)?.image,
             None => built_firmware(None)?,
         };
 

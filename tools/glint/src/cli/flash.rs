@@ -119,7 +119,7 @@ impl FlashArguments {
         }
         let name = self.board.name()?;
         self.baud.check(&name)?;
-        let program = program::read(&self.program)?;
+        let program = program::read(&self.program)?.image;
         let mut board: Box<dyn Board> = match board::simulated(&name, None)? {
             Some(board) => {
                 show_simulation(board.meter());

@@ -88,7 +88,7 @@ impl MakeArguments {
         let inputs = [&self.firmware].into_iter().chain(&self.bitstream);
         let scenes = self.scene.iter().map(PathBuf::from);
         let out = Output::open(&self.out, IMAGE, inputs.cloned().chain(scenes))?;
-        let firmware = program::read(&self.firmware)?;
+        let firmware = program::read(&self.firmware)?.image;
         let bitstream = match &self.bitstream {
             Some(path) => {
                 let file = read_file(path)?;

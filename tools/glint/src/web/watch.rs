@@ -47,10 +47,14 @@ impl Watched {
             }
             self.known = found;
             match program::read(&self.path) {
-                Ok(image) => {
+                Ok(program::Program { image, places }) => {
                     let name = self.path.file_name().unwrap_or_default();
                     let name = name.to_string_lossy().into_owned();
-                    channels.start(Program { name, image });
+                    channels.start(Program {
+                        name,
+                        image,
+                        places,
+                    });
                 }
                 Err(error) => channels.hub.notify(error.to_string(), true),
             }

@@ -98,13 +98,18 @@ fn a_dropped_program_replaces_the_running_one_and_its_faults_are_shown() {
     browser.wait(&page, &format!("{NOTICE}.startsWith('faults runs, ')"));
     browser.evaluate(
         &page,
-        "document.querySelector('[aria-label=\"switch 0\"]').click()",
+        "document.querySelector('[aria-label=\"switch 4\"]').click()",
     );
-    browser.wait(&page, &format!("{LOG}.includes('a fault on purpose')"));
-    browser.wait(&page, &format!("{LOG}.includes('press Enter to restart')"));
+    for text in [
+        "trap: illegal instruction",
+        "press Enter to restart",
+        " is in update, ",
+    ] {
+        browser.wait(&page, &format!("{LOG}.includes('{text}')"));
+    }
     browser.evaluate(
         &page,
-        "document.querySelector('[aria-label=\"switch 0\"]').click()",
+        "document.querySelector('[aria-label=\"switch 4\"]').click()",
     );
 
     // A program for other boards is refused, and the next one runs.
