@@ -242,10 +242,11 @@ impl Module {
                 continue;
             };
             let name = child.ident.to_string();
-            let is_public = is_public(&child.vis);
+            let exports = self.exports_of(&name)?;
+            let is_private = !is_public(&child.vis);
             let module = Self {
                 path: format!("{}::{name}", self.path),
-                exports: (!is_public).then(|| (self.path.clone(), self.exports_of(&name))),
+                exports: is_private.then(|| (self.path.clone(), exports)),
                 items: Vec::new(),
             };
             let folder = folder.join(&name);
@@ -255,7 +256,10 @@ impl Module {
         Ok(())
     }
     /// The names that this module exports from its child module `name`.
-    fn exports_of(&self, name: &str) -> BTreeSet<String> {
+    ///
+    /// # Errors
+    /// An export is not the name of an item.
+    fn exports_of(&self, name: &str) -> Result<BTreeSet<String>> {
         let mut names = BTreeSet::new();
         for item in &self.items {
             if let Item::Use(import) = item
@@ -263,10 +267,10 @@ impl Module {
                 && is_public(&import.vis)
                 && path.ident == name
             {
-                names.extend(leaves(&path.tree));
+                names.extend(leaves(&path.tree)?);
             }
         }
-        names
+        Ok(names)
     }
 
     /// Whether a `use` names an item of a child module.
@@ -296,13 +300,21 @@ impl Module {
 }
 
 /// The names at the ends of the tree of a `use`.
-fn leaves(tree: &UseTree) -> Vec<String> {
-    match tree {
-        UseTree::Path(path) => leaves(&path.tree),
+///
+/// # Errors
+/// An end is not the name of an item.
+fn leaves(tree: &UseTree) -> Result<Vec<String>> {
+    Ok(match tree {
+        UseTree::Path(path) => leaves(&path.tree)?,
         UseTree::Name(name) => vec![name.ident.to_string()],
-        UseTree::Group(group) => group.items.iter().flat_map(leaves).collect(),
-        UseTree::Rename(_) | UseTree::Glob(_) => Vec::new(),
-    }
+        UseTree::Group(group) => {
+            let parts = group.items.iter().map(leaves);
+            parts.collect::<Result<Vec<_>>>()?.concat()
+        }
+        UseTree::Rename(_) | UseTree::Glob(_) => {
+            bail!("`pub use` of the library's own items: expected their names, found `as` or `*`")
+        }
+    })
 }
 
 /// The name and the attributes of a public definition with a name; `None` for any other item.
@@ -549,6 +561,14 @@ mod tests {
                 function.replace(" { None }", ";")
             )]
         );
+    }
+
+    #[test]
+    fn an_export_under_another_name_is_refused() {
+        for text in ["mod a; pub use a::{B as C};", "mod a; pub use a::*;"] {
+            let loaded = Interface::load(&|_| Ok(text.to_owned()));
+            assert!(loaded.is_err_and(|error| error.to_string().contains("expected their names")));
+        }
     }
 
     #[test]
