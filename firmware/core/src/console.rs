@@ -14,6 +14,7 @@ mod effect;
 mod error;
 mod forms;
 mod object;
+mod projection;
 mod syntax;
 mod table;
 mod values;

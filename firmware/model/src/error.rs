@@ -94,6 +94,10 @@ pub enum RenderError {
     Orthographic,
     /// The half width of the camera is out of range for a field.
     HalfWidth(U8_28),
+    /// A side of the camera's window is out of range for a field.
+    Sides,
+    /// The camera's window is too far from its axis for its width or height.
+    Window,
     /// A frame has more objects than [`MAX_OBJECTS`].
     Objects(usize),
     /// Two eyes were requested for a wireframe, which has its own eye, or for a frame that must be drawn as one frame per eye.
@@ -154,6 +158,13 @@ impl fmt::Display for RenderError {
                 f,
                 "half_width {half_width}: expected {} to {} with a field",
                 FIELD_HALF_WIDTH[0], FIELD_HALF_WIDTH[1]
+            ),
+            Self::Sides => {
+                let [least, most] = FIELD_HALF_WIDTH;
+                write!(f, "window: expected sides within {most} of the camera's axis, and a half height of at least 9/16 * {least}, with a field")
+            }
+            Self::Window => f.write_str(
+                "window: expected it closer to the camera's axis, or wider and higher, for a picture of this width",
             ),
             Self::Objects(found) => {
                 write!(f, "{found} objects: expected at most {MAX_OBJECTS}")

@@ -3,6 +3,7 @@
 use glint_core::camera::{Projection, View};
 use glint_core::colour::Rgb565;
 use glint_core::field::magnitude;
+use glint_core::fixed::U8_28;
 use glint_core::light::Gradient;
 use glint_core::picture::{Samples, Window};
 
@@ -39,7 +40,8 @@ pub struct Sky {
 
 impl Sky {
     /// The sky for a camera, in a picture of one of the supported sizes.
-    pub fn new(view: &View, [width, height]: [u32; 2], gradient: Gradient) -> Self {
+    pub fn new(view: &View, size: [u32; 2], gradient: Gradient) -> Self {
+        let [width, height] = size;
         let [middle, across, down] = if gradient.is_fixed {
             [
                 0,
@@ -47,7 +49,7 @@ impl Sky {
                 -(((2 << FRACTION) + height as i32 / 2) / height as i32),
             ]
         } else {
-            Self::heights(view, width)
+            Self::heights(view, size)
         };
         // The middle of the picture is half a step before a group, and half a line above a line.
         let [columns, lines] = [width / 16, height / 2].map(|x| x as i32);
@@ -64,21 +66,26 @@ impl Sky {
     }
 
     /// The height in the middle of the picture, and its changes from a group to the next one and from a line to the next one, s8.23.
-    fn heights(view: &View, width: u32) -> [i32; 3] {
-        // An orthographic camera has one direction.
-        let half_width = match view.projection() {
-            Projection::Perspective => view.half_width().to_bits(),
-            Projection::Orthographic => 0,
-        };
+    fn heights(view: &View, size: [u32; 2]) -> [i32; 3] {
         let [u, v, n] = [view.u(), view.v(), view.n()].map(|[_, _, z]| i64::from(z.to_bits()));
-        // A fifth of the half width, because the width of a picture is 5·2^k pixels; 30 fraction bits. A product has at most 61 bits.
-        let fifth = (half_width << 2) as i64 / 5;
-        let k = (width / 5).ilog2();
-        // A group is 16/width of the half width from the next one, and a line 2/width.
-        let step = |row: i64, shift: u32| ((row * fifth + (1 << (shift - 1))) >> shift) as i32;
-        let (across, down) = (step(u, 26 + k), step(v, 29 + k));
-        let middle = (n + ((i64::from(view.shift().to_bits()) * u) >> 28)) as i32;
-        [middle, across, down]
+        // An orthographic camera has one direction.
+        if view.projection() == Projection::Orthographic {
+            return [n as i32, 0, 0];
+        }
+        let lens = view.lens();
+        // Half a picture has 5·2^k pixels across and 45·2^k down, so a fifth or a 45th of its length in the window is divided by a power of
+        // two; 30 fraction bits. A product has at most 61 bits. A group is eight times as far from the next one as a pixel.
+        let step = |row: i64, (pixels, length): (u32, U8_28), grouped: u32| {
+            let k = pixels.trailing_zeros();
+            let part = (length.to_bits() << 2) as i64 / i64::from(pixels >> k);
+            let shift = 30 + k - grouped;
+            ((row * part + (1 << (shift - 1))) >> shift) as i32
+        };
+        let [of_width, of_height] = lens.scales(size);
+        let (across, down) = (step(u, of_width, 3), step(v, of_height, 0));
+        let aside = core::iter::zip(lens.middle(), [u, v]);
+        let aside = aside.map(|(middle, row)| (i64::from(middle.to_bits()) * row) >> 28);
+        [(n + aside.sum::<i64>()) as i32, across, down]
     }
 
     /// The sky in a window of a picture with this number of samples: its heights begin at the window's first pixel.

@@ -12,7 +12,7 @@ use glint_core::feature::{
     ANIMATE, ANTIALIASING, FIELD, FIT, MESH_IN_FIELD, OBJECT, OVERLAY, SKY, STEREO, WIREFRAME,
 };
 use glint_core::field::Field;
-use glint_core::fixed::{Q32_32, Turns, U8_28, U32_32};
+use glint_core::fixed::{Q32_32, Turns, U32_32};
 use glint_core::framing;
 use glint_core::light::Background;
 use glint_core::matrix::{Axis, Matrix, MatrixError};
@@ -405,14 +405,19 @@ impl Scene {
                 self.move_view(View::look(self.view.eye(), yaw, pitch, roll)?);
             }
             Setting::LookAt { view } => self.move_view(view),
-            Setting::FieldOfView { angle } => self.view = self.view.with_field_of_view(angle)?,
-            Setting::Orthographic { width } => self.view = self.view.with_width(width)?,
-            Setting::Zoom { factor } => {
-                // Rounded down. With too small a factor the half width is out of range.
-                let half_width = self.view.half_width().checked_div(factor);
-                let half_width = half_width.unwrap_or(U8_28::lit("256"));
-                self.view = self.view.with_half_width(half_width)?;
+            Setting::Projection { volume } => {
+                self.view = self.view.with_lens(volume.lens);
+                self.options.clip = Clip::to(volume.far);
             }
+            Setting::FieldOfView { angles } => {
+                self.view = match angles {
+                    (across, None) => self.view.with_field_of_view(across)?,
+                    (across, Some(down)) => self.view.with_fields_of_view([across, down])?,
+                };
+            }
+            Setting::Orthographic { width } => self.view = self.view.with_width(width)?,
+            Setting::Near { distance } => self.view = self.view.with_near(distance)?,
+            Setting::Zoom { factor } => self.view = self.view.zoomed(factor)?,
             Setting::Fit { lens } => {
                 if FIT.is_built {
                     let (up, angle) = lens.unwrap_or((Axis::Z, None));
@@ -463,9 +468,7 @@ impl Scene {
                 }
                 self.texture = texture.map(name);
             }
-            Setting::Clip { far } => {
-                self.options.clip = far.map_or(Clip::Guard, |far| Clip::View { far });
-            }
+            Setting::Clip { far } => self.options.clip = Clip::to(far),
             Setting::Winding { rule } => self.options.winding = rule,
             Setting::Edges { edges } => {
                 if edges.is_some() && (self.kind != Kind::Solid || self.field.is_some()) {
@@ -589,7 +592,7 @@ impl Scene {
         self.field.is_some() && self.kind == Kind::Solid
     }
 
-    /// Moves the camera to the position and basis of `view`, and keeps projection, half width and near plane.
+    /// Moves the camera to the position and basis of `view`, and keeps the lens.
     pub fn move_view(&mut self, view: View) {
         self.view = view.with_lens_of(&self.view);
     }

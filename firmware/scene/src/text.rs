@@ -156,11 +156,13 @@ impl Scene {
                 let from = from.filter(|from| from.sphere == self.sphere);
                 self.put(name, from, out, |scene| scene.view)
             }
-            // The command `view` covers these options.
+            // The command `view` covers these options, and `clip` the far plane of `projection`.
             OptionName::Look
             | OptionName::LookAt
+            | OptionName::Projection
             | OptionName::FieldOfView
             | OptionName::Orthographic
+            | OptionName::Near
             | OptionName::Zoom
             | OptionName::Fit => Ok(()),
             OptionName::Quality => self.put(name, from, out, |scene| scene.quality),

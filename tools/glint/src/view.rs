@@ -2,7 +2,7 @@
 
 use crate::error::{FormatError, InputError};
 use crate::formats::read_file;
-use glint_core::camera::{Projection, View, ViewError};
+use glint_core::camera::{Lens, Projection, View, ViewError};
 use glint_core::choice::Choice;
 use glint_core::fixed::fixed::traits::Fixed;
 use glint_core::fixed::{Q2_23, Q32_32, Turns};
@@ -22,10 +22,15 @@ struct ViewFile {
     near: f64,
     /// `perspective`, which is the default, or `orthographic`.
     projection: Option<String>,
+    /// Half the height of the image plane, by default that of square pixels.
+    half_height: Option<f64>,
+    /// Middle of the picture in the image plane along u and v, by default 0.
+    middle: Option<[f64; 2]>,
 }
 
-/// Reads a view: `{"eye":[x,y,z],"u":[..],"v":[..],"n":[..],"half_width":h,"near":z,"projection":"perspective"}`; the default
-/// projection is perspective.
+/// Reads a view:
+/// `{"eye":[x,y,z],"u":[..],"v":[..],"n":[..],"half_width":h,"near":z,"projection":"perspective","half_height":h,"middle":[x,y]}`; by
+/// default the projection is perspective, pixels are square, and the middle of the picture is straight ahead.
 ///
 /// # Errors
 /// The file cannot be read, has other contents, or [`View::new_checked`] rejects the camera.
@@ -40,7 +45,7 @@ pub fn read(path: &Path) -> Result<View, InputError> {
 /// As for [`read`].
 pub fn parse(bytes: &[u8]) -> Result<View, FormatError> {
     let file: ViewFile = serde_json::from_slice(bytes).map_err(|error| {
-        let form = r#"{"eye":[x,y,z],"u":[..],"v":[..],"n":[..],"half_width":h,"near":z,"projection":"perspective"}"#;
+        let form = r#"{"eye":[x,y,z],"u":[..],"v":[..],"n":[..],"half_width":h,"near":z,"projection":"perspective","half_height":h,"middle":[x,y]}"#;
         FormatError::whole(form, error.to_string().escape_debug().to_string())
     })?;
     let projection = file.projection.as_deref().unwrap_or_default();
@@ -62,8 +67,19 @@ pub fn parse(bytes: &[u8]) -> Result<View, FormatError> {
         number(file.half_width, "half_width")?,
         number(file.near, "near")?,
     );
-    view.map(|view| view.with_projection(projection))
-        .map_err(no_camera)
+    let view = view.map_err(no_camera)?.with_projection(projection);
+    if file.half_height.is_none() && file.middle.is_none() {
+        return Ok(view);
+    }
+    let half_height = match file.half_height {
+        Some(half_height) => number(half_height, "half_height")?,
+        None => view.lens().half_height(),
+    };
+    let [x, y] = file.middle.unwrap_or_default();
+    let middle = [number(x, "middle")?, number(y, "middle")?];
+    let half = [view.half_width(), half_height];
+    let lens = Lens::window(projection, half, middle, view.near()).map_err(no_camera)?;
+    Ok(view.with_lens(lens))
 }
 
 fn vector<T: Fixed>(values: [f64; 3], name: &str) -> Result<[T; 3], FormatError> {

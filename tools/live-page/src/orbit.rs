@@ -124,9 +124,8 @@ pub fn moved(view: &View, drag: &Drag, up: Vector) -> Option<View> {
     if !is_parallel {
         return Some(view);
     }
-    let width: f64 = view.half_width().to_num();
-    let width = U8_28::saturating_from_num(width * drag.zoom);
-    Some(view.with_half_width(width).unwrap_or(view))
+    let factor = U8_28::saturating_from_num(1.0 / drag.zoom);
+    Some(view.zoomed(factor).unwrap_or(view))
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use glint_core::animation::Animation;
-use glint_core::camera::ViewError;
+use glint_core::camera::{Projection, ViewError};
 use glint_core::choice::Choice;
 use glint_core::console::{
     Command, GestureAction, ImuAction, LINE_MAX, MESHES, ObjectAction, Order, Row, Setting,
@@ -180,6 +180,12 @@ impl SceneFile {
         if let (Some(value), true, false) = (file.get("aa"), self.depth, self.scene.has_depths()) {
             file.refuse("aa", value, "1 beside the key depth");
         }
+        if let Some(value) = file.get("projection")
+            && self.scene.view.projection() == Projection::Orthographic
+            && file.has_any(&["field", "stereo"])
+        {
+            file.refuse("projection", value, "perspective beside field or stereo");
+        }
         if let Some(value) = file.get("animate") {
             check_animation(file, value, &self.scene);
         }
@@ -242,7 +248,11 @@ impl SceneFile {
         let (up, span) = stated.unwrap_or((usual.name().to_owned(), 0..0));
         let mut line = format!("{} {up}", row.command);
         let angle = commands().into_iter().find(|row| row.key() == "fov");
-        let angle = angle.and_then(|row| Some(format!("{line} {}", file.peek(row)?)));
+        // The horizontal angle, without a vertical one.
+        let angle = angle.and_then(|row| {
+            let angles = file.peek(row)?;
+            Some(format!("{line} {}", angles.split(' ').next()?))
+        });
         // A wrong angle is reported with the key `fov`.
         if let Some(with_angle) = angle.filter(|line| Line::parse(line).is_ok()) {
             line = with_angle;

@@ -210,6 +210,11 @@ fn refused_files() {
             r#"
             lanes = 3 → lanes: `3`: expected 1, 2 or 4
             fog = 16 → fog = `16`: fog: off|DENSITY is "16"
+            projection = "orthographic -1 1 -1 1 0.1" → projection: `"orthographic -1 1 -1 1 0.1"`: expected perspective beside field or stereo
+            projection = "matrix 1" → projection = `matrix 1`: projection: ENTRY is missing: expected a number, usage: projection
+            projection = "perspective 1 -1 -1 1 0.1" → projection = `perspective 1 -1 -1 1 0.1`: projection: left 1, right -1: expected left below right
+            projection = "perspective -1 1 -1 1 1"; near = 0.1 → near: expected only without projection
+            near = 3 → near = `3`: near 3: expected 0.01 to 2
             orthographic = 2 → orthographic: expected only beside model or object
             edges = "over" → edges: expected only beside model
             depth = "on" → depth: `"on"`: expected true or false
@@ -301,6 +306,7 @@ fn automatic_cameras() {
         model = "a/b.obj" → scene a/b.obj; fit y
         model = "b.GLTF"; up = "x" → scene b.GLTF; fit x
         model = "b.stl"; fov = 60; zoom = 2 → scene b.stl; fit z 60; fov 60; zoom 2
+        model = "b.stl"; fov = "60 50"; near = 0.5 → scene b.stl; fit z 60; fov 60 50; near 0.5
         object = ["cube", "torus"]; orthographic = 2 → object add cube; object add torus; fit z; orthographic 2
         field = "menger:2" → camera 4 30 60; field menger:2
         field = "menger:2"; model = "b.obj"; fov = 50 → camera 4 30 60; fov 50; scene b.obj; mesh on; field menger:2

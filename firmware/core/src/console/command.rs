@@ -7,10 +7,11 @@ use super::argument::{Argument, Default, Flag, Off, Or, Own, Reader, WordArgumen
 use super::error::{ParseError, ParseErrorKind};
 use super::forms::{FIELD, LIT, MESHES, Order, Row, key, option, switch};
 use super::object::Object;
+use super::projection::Projection;
 use super::syntax::{Parameter, Shape, Syntax, WordKind};
 use super::table::{commands, part, shows};
 use super::values::{
-    Benchmark, DemoAction, FieldOfView, Fit, GestureAction, HalfTurn, Imu, LookAt, Mounting, Name,
+    Benchmark, DemoAction, FieldsOfView, Fit, GestureAction, HalfTurn, Imu, LookAt, Mounting, Name,
     SceneName, Sensitivity, Size, TextureName, Upload, UploadName, View, Whole,
 };
 use crate::colour::{Shading, Winding};
@@ -116,21 +117,29 @@ commands! {
             => key(Order::Camera, "4 30 70").with(LIT).without(&["lookat"])
                 .host(option("camera", "R,THETA,PHI", "A camera on a sphere about the origin: the distance (2 to 5), azimuth and polar angle in degrees. The half width of the image plane at distance 1 is 0.9, and the near plane is at 0.1 [default: a camera that shows the whole model; with a field 4,30,60]")
                     .expects("a camera R,THETA,PHI such as 3,30,60"));
-        view View(view: View) or show in VIEW: "show or set the camera: eye, basis (right, down, forward), half width, near plane, projection"
+        view View(view: View) or show in VIEW: "show or set the camera: eye, basis (right, down, forward), half width, near plane, projection, window"
             => key(Order::Camera, "0 -3 0 1 0 0 0 0 -1 0 1 0 0.9 0.1").with(LIT).without(&["camera", "lookat"]);
         look Look(yaw: Turns, pitch: Turns, roll: Turns) in VIEW: "turn the camera in place: YAW to the right, PITCH down, ROLL about the view direction";
         lookat LookAt(view: LookAt) in VIEW: "look from an eye in the direction of a gaze, with z or another direction up on the screen"
             => key(Order::Camera, "3 0 1 -3 0 -1").with(LIT)
                 .host(option("look-at", "EX,EY,EZ,GX,GY,GZ[,UX,UY,UZ]", "A camera at the eye E in the direction of the gaze G, with the direction U (by default z) up on the screen")
                     .expects("a camera EX,EY,EZ,GX,GY,GZ[,UX,UY,UZ] such as 3,0,1,-3,0,-1"));
-        fov FieldOfView(angle: FieldOfView) in VIEW: "set a perspective projection by its horizontal field of view, in degrees"
+        projection Projection(volume: Projection) in VIEW: "set the projection by the sides of the picture, near and far plane, or by a 4x4 matrix"
+            => key(Order::Lens, "perspective -0.1 0.1 -0.05 0.06 0.1 10").with(LIT).without(&["fov", "orthographic"])
+                .host(option("projection", "perspective|orthographic|matrix,…", "The projection by the sides of the picture in the near plane and the distances of near and far plane: `perspective,LEFT,RIGHT,BOTTOM,TOP,NEAR[,FAR]`, `orthographic,…`, or `matrix,` and the 16 numbers of a projection matrix of OpenGL, row by row. A far plane clips as --far")
+                    .expects("perspective or orthographic,LEFT,RIGHT,BOTTOM,TOP,NEAR[,FAR], or matrix and 16 numbers"));
+        fov FieldOfView(angles: FieldsOfView) in VIEW: "set a perspective projection by its horizontal field of view in degrees; Y makes pixels that are not square"
             => key(Order::Lens, "66").with(LIT).without(&["orthographic"])
-                .host(option("fov", "DEGREES", "The horizontal field of view, 1 to 179 degrees, instead of the camera's half width. Pixels are square")
+                .host(option("fov", "DEGREES[,DEGREES]", "The horizontal field of view, 1 to 179 degrees, instead of the camera's half width, and the vertical one, by default that of square pixels")
                     .expects("1 to 179 degrees"));
         orthographic Orthographic(width: U8_28) in VIEW: "set an orthographic projection by the picture's WIDTH in world units (0.0174 to 230); fov sets perspective"
             => key(Order::Lens, "2").with(MESHES).without(FIELD)
                 .host(option("orthographic", "WIDTH", "Orthographic projection, with WIDTH world units (0.0174 to 230) across the picture. A field requires perspective")
                     .expects("a width in world units"));
+        near Near(distance: U4_28) in VIEW: "set the distance of the near plane from the eye in world units (0.01 to 2)"
+            => key(Order::Lens, "0.5").with(LIT).without(&["projection"])
+                .host(option("near", "DISTANCE", "Distance of the near plane from the eye, 0.01 to 2 world units: nothing nearer is drawn [default: the camera's, 0.1]")
+                    .expects("a distance of 0.01 to 2"));
         zoom Zoom(factor: U8_28) in VIEW: "enlarge the picture about its middle by FACTOR; below 1 shows more"
             => key(Order::Lens, "1.5").with(LIT).without(&["orthographic"])
                 .host(option("zoom", "FACTOR", "Enlarge the middle of the picture by this factor, with a narrower field of view")

@@ -8,10 +8,10 @@ use super::argument::{Argument, Reader, WordArgument, group};
 use super::error::ValueError;
 use super::syntax::{NameList, Parameter, Shape, WordKind};
 use crate::calibration::{MOST_SAMPLES, SAMPLES};
-use crate::camera::{self, Projection};
+use crate::camera::{self, Lens, Projection};
 use crate::choice::choices;
 use crate::field::{self, KINDS};
-use crate::fixed::{Q2_23, Q32_32, Turns, U4_28, U8_28, parse_i32};
+use crate::fixed::{Q2_23, Q4_28, Q32_32, Turns, U4_28, U8_28, parse_i32};
 use crate::imu::Follow;
 use crate::light::{self, Background, HIGHLIGHT_FORM, Highlight, Rgb, parse_rgb};
 use crate::matrix::Axis;
@@ -114,6 +114,17 @@ impl WordArgument for U4_28 {
     #[inline(never)]
     fn parse(text: &str) -> Option<Self> {
         U8_28::parse(text)?.checked_to_num()
+    }
+}
+
+/// A decimal number, rounded to the fixed-point format Q4.28.
+impl WordArgument for Q4_28 {
+    type Value<'a> = Self;
+    const KIND: WordKind = WordKind::Text(&"a number from -8 to below 8");
+
+    #[inline(never)]
+    fn parse(text: &str) -> Option<Self> {
+        parse_i32(text)
     }
 }
 
@@ -327,16 +338,37 @@ group! {
 }
 
 group! {
-    /// A camera: eye, basis, half width, near plane, and a projection, by default perspective.
+    /// A camera: eye, basis, half width, near plane, projection (by default perspective) and window.
     View: camera::View = (
         ex: Q32_32, ey: Q32_32, ez: Q32_32,
         ux: Q2_23, uy: Q2_23, uz: Q2_23,
         vx: Q2_23, vy: Q2_23, vz: Q2_23,
         nx: Q2_23, ny: Q2_23, nz: Q2_23,
-        half_width: U8_28, near: U4_28, projection: Option<Projection>,
-    ) => camera::View::new_checked([ex, ey, ez], [ux, uy, uz], [vx, vy, vz], [nx, ny, nz], half_width, near)
-        .map(|view| view.with_projection(projection.unwrap_or_default()))
+        half_width: U8_28, near: U4_28, projection: Option<Projected>,
+    ) => {
+        let view = camera::View::new_checked([ex, ey, ez], [ux, uy, uz], [vx, vy, vz], [nx, ny, nz], half_width, near);
+        let (projection, window) = projection.unwrap_or_default();
+        let lens = window.map(|(half_height, middle)| {
+            Lens::window(projection, [half_width, half_height], middle, near)
+        });
+        view.and_then(|view| match lens {
+            Some(lens) => Ok(view.with_lens(lens?)),
+            None => Ok(view.with_projection(projection)),
+        })
         .map_err(ValueError::View)
+    }
+}
+
+group! {
+    /// A projection, and a window other than the centred one with square pixels.
+    Projected: (Projection, Option<(U8_28, [Q32_32; 2])>) = (projection: Projection, window: Option<Window>)
+        => Ok::<_, ValueError>((projection, window))
+}
+
+group! {
+    /// Half height and middle of a window.
+    Window: (U8_28, [Q32_32; 2]) = (half_height: U8_28, x: Q4_28, y: Q4_28)
+        => Ok::<_, ValueError>((half_height, [x, y].map(Into::into)))
 }
 
 group! {
@@ -350,7 +382,7 @@ group! {
     Up: [Q32_32; 3] = (ux: Q32_32, uy: Q32_32, uz: Q32_32) => Ok::<_, ValueError>([ux, uy, uz])
 }
 
-/// A horizontal field of view in degrees.
+/// A field of view in degrees.
 pub struct FieldOfView;
 
 impl WordArgument for FieldOfView {
@@ -362,6 +394,11 @@ impl WordArgument for FieldOfView {
         let is_accepted = (1..=179).contains(&degrees);
         is_accepted.then(|| Turns::from_degrees(degrees))
     }
+}
+
+group! {
+    /// A horizontal field of view, and a vertical one, by default that of square pixels.
+    FieldsOfView: (Turns, Option<Turns>) = (x: FieldOfView, y: Option<FieldOfView>) => Ok::<_, ValueError>((x, y))
 }
 
 group! {

@@ -5,22 +5,25 @@
 //! rely on its ranges.
 
 mod error;
+mod lens;
 mod limits;
+mod projection;
+mod volume;
 
 use core::fmt;
 
-use crate::choice::choices;
 use crate::fixed::{Q2_23, Q4_28, Q32_32, Turns, U4_28, U8_28};
 use crate::trig::sin_cos_q30;
 use crate::vector::{self, unit};
 
-pub use error::{BasisVector, ViewError};
-pub use limits::{FIELD_OF_VIEW, HALF_WIDTH, MAX_EYE, NEAR, RADIUS, WIDTH};
-
-/// Half width of the image plane at distance 1, in world units, for cameras that are defined by angles.
-pub const DEFAULT_HALF_WIDTH: U8_28 = U8_28::lit("0.9");
-/// Distance of the near plane from the eye, in world units, for cameras that are defined by angles.
-pub const DEFAULT_NEAR: U4_28 = U4_28::lit("0.1");
+pub use error::{BasisVector, Side, ViewError};
+pub use lens::Lens;
+pub use limits::{
+    DEFAULT_HALF_WIDTH, DEFAULT_NEAR, FIELD_OF_VIEW, HALF_HEIGHT, HALF_WIDTH, MAX_EYE, MIDDLE,
+    NEAR, RADIUS, WIDTH,
+};
+pub use projection::Projection;
+pub use volume::{Sides, ViewVolume};
 
 /// Default upward direction on the screen: the z axis.
 pub const UP: [Q32_32; 3] = [Q32_32::ZERO, Q32_32::ZERO, Q32_32::ONE];
@@ -31,21 +34,6 @@ const MIN_SINE: i64 = 1 << 20;
 /// A vector with components in units of 2^−60.
 type Exact = [i64; 3];
 
-/// Projection of the world to the picture.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Projection {
-    /// All lines of sight pass through the eye.
-    #[default]
-    Perspective,
-    /// Lines of sight are parallel to n, so sizes on the screen do not depend on the distance.
-    Orthographic,
-}
-
-choices!(Projection {
-    Perspective: "perspective",
-    Orthographic: "orthographic",
-});
-
 /// A checked camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct View {
@@ -53,10 +41,7 @@ pub struct View {
     u: [Q2_23; 3],
     v: [Q2_23; 3],
     n: [Q2_23; 3],
-    half_width: U8_28,
-    near: U4_28,
-    projection: Projection,
-    shift: Q4_28,
+    lens: Lens,
 }
 
 impl View {
@@ -77,22 +62,8 @@ impl View {
     ) -> Result<Self, ViewError> {
         check_eye(eye)?;
         check_basis(u, v, n)?;
-        if !(HALF_WIDTH[0]..=HALF_WIDTH[1]).contains(&half_width) {
-            return Err(ViewError::HalfWidth(half_width));
-        }
-        if !(NEAR[0]..=NEAR[1]).contains(&near) {
-            return Err(ViewError::Near(near));
-        }
-        Ok(Self {
-            eye,
-            u,
-            v,
-            n,
-            half_width,
-            near,
-            projection: Projection::Perspective,
-            shift: Q4_28::ZERO,
-        })
+        let lens = Lens::new(Projection::Perspective, half_width, near)?;
+        Ok(Self { eye, u, v, n, lens })
     }
 
     /// Returns the camera that looks at the origin from a point C on the sphere of radius `r` about the origin.
@@ -119,10 +90,7 @@ impl View {
             u: rounded([-st << 30, ct << 30, 0]),
             v: rounded([cp * ct, cp * st, -sp << 30]),
             n: rounded(outward.map(|x| -x)),
-            half_width: DEFAULT_HALF_WIDTH,
-            near: DEFAULT_NEAR,
-            projection: Projection::Perspective,
-            shift: Q4_28::ZERO,
+            lens: Lens::DEFAULT,
         })
     }
 
@@ -157,10 +125,7 @@ impl View {
             u: rounded(swapped(rolled(cr, sr))),
             v: rounded(swapped(rolled(sr, -cr))),
             n: rounded(swapped(forward)),
-            half_width: DEFAULT_HALF_WIDTH,
-            near: DEFAULT_NEAR,
-            projection: Projection::Perspective,
-            shift: Q4_28::ZERO,
+            lens: Lens::DEFAULT,
         })
     }
 
@@ -198,89 +163,119 @@ impl View {
             u: rounded(u.map(|x| i64::from(x) << 30)),
             v: rounded(vector::cross(n, u)),
             n: rounded(n.map(|x| i64::from(x) << 30)),
-            half_width: DEFAULT_HALF_WIDTH,
-            near: DEFAULT_NEAR,
-            projection: Projection::Perspective,
-            shift: Q4_28::ZERO,
+            lens: Lens::DEFAULT,
         })
     }
 
     /// Returns this camera in perspective, with another horizontal field of view: its half width is tan(`angle`/2), with a
-    /// relative error of at most 2^−22. Pixels are square, so the vertical field of view is 2·atan(H/W·tan(angle/2)) for a
-    /// picture of W×H pixels.
+    /// relative error of at most 2^−22. The picture is centred on the direction of view and its pixels are square, so the vertical field of
+    /// view is 2·atan(H/W·tan(angle/2)) for a picture of W×H pixels.
     ///
     /// # Errors
     /// The angle is not from 1° to 179°.
+    #[inline(never)]
     pub fn with_field_of_view(self, angle: Turns) -> Result<Self, ViewError> {
-        if !(FIELD_OF_VIEW[0]..=FIELD_OF_VIEW[1]).contains(&angle) {
-            return Err(ViewError::FieldOfView(angle));
-        }
-        let (sin, cos) = sines(Turns(angle.0 / 2));
-        // The cosine of an angle below 90° is at least 2^23 units, and the dividend is at most 2^59.
-        let tangent = ((sin << 29) / cos + 1) >> 1;
-        Ok(Self {
-            half_width: U8_28::from_bits(tangent.unsigned_abs()),
-            projection: Projection::Perspective,
-            ..self
-        })
+        let half_width = tangent_of_half(angle)?;
+        let lens = Lens::new(Projection::Perspective, half_width, self.near())?;
+        Ok(Self { lens, ..self })
+    }
+
+    /// Returns this camera in perspective, with a horizontal and a vertical field of view: half width and half height are tan(angle/2) of
+    /// these angles, each with a relative error of at most 2^−22. Pixels are square only if the angles belong to the shape of the picture.
+    ///
+    /// # Errors
+    /// An angle is not from 1° to 179°.
+    #[inline(never)]
+    pub fn with_fields_of_view(self, [across, down]: [Turns; 2]) -> Result<Self, ViewError> {
+        let half = [tangent_of_half(across)?, tangent_of_half(down)?];
+        let lens = Lens::window(
+            Projection::Perspective,
+            half,
+            [Q32_32::ZERO; 2],
+            self.near(),
+        )?;
+        Ok(Self { lens, ..self })
     }
 
     /// Returns this camera in orthographic projection, whose picture is `width` world units wide. The half width is `width`/2,
-    /// rounded down to 2^−28.
+    /// rounded down to 2^−28; the picture is centred on the direction of view, and its pixels are square.
     ///
     /// # Errors
     /// The width is not from 0.0174 to 230.
+    #[inline(never)]
     pub fn with_width(self, width: U8_28) -> Result<Self, ViewError> {
         if !(WIDTH[0]..=WIDTH[1]).contains(&width) {
             return Err(ViewError::Width(width));
         }
-        Ok(Self {
-            half_width: U8_28::from_bits(width.to_bits() >> 1),
-            projection: Projection::Orthographic,
-            ..self
-        })
+        let half_width = U8_28::from_bits(width.to_bits() >> 1);
+        let lens = Lens::new(Projection::Orthographic, half_width, self.near())?;
+        Ok(Self { lens, ..self })
     }
 
-    /// Returns this camera with another half width, in world units, and the same projection.
+    /// Returns this camera with another half width, in world units, and square pixels; projection and middle of the picture stay.
     ///
     /// # Errors
     /// The half width is not from 0.0087 to 115.
     pub fn with_half_width(self, half_width: U8_28) -> Result<Self, ViewError> {
-        if !(HALF_WIDTH[0]..=HALF_WIDTH[1]).contains(&half_width) {
-            return Err(ViewError::HalfWidth(half_width));
-        }
-        Ok(Self { half_width, ..self })
+        let lens = self.lens.with_half_width(half_width)?;
+        Ok(Self { lens, ..self })
     }
 
-    /// Returns this camera with another projection, and the same half width.
+    /// Returns this camera with a picture enlarged about its middle by `factor`: half width and half height are divided by it, rounded down.
+    ///
+    /// # Errors
+    /// The half width is then not from 0.0087 to 115, or the half height not from 0.0049 to 115.
+    #[inline(never)]
+    pub fn zoomed(self, factor: U8_28) -> Result<Self, ViewError> {
+        let lens = self.lens.zoomed(factor)?;
+        Ok(Self { lens, ..self })
+    }
+
+    /// Returns this camera with another distance of the near plane from the eye, in world units.
+    ///
+    /// # Errors
+    /// The distance is not from 0.01 to 2.
+    #[inline(never)]
+    pub fn with_near(self, near: U4_28) -> Result<Self, ViewError> {
+        let lens = self.lens.with_near(near)?;
+        Ok(Self { lens, ..self })
+    }
+
+    /// Returns this camera with another projection, and the same window and near plane.
     #[must_use]
     pub const fn with_projection(self, projection: Projection) -> Self {
-        Self { projection, ..self }
+        let lens = self.lens.with_projection(projection);
+        Self { lens, ..self }
     }
 
-    /// Returns this camera with the projection, the half width and the near plane of `other`.
+    /// Returns this camera with another lens.
+    #[must_use]
+    pub const fn with_lens(self, lens: Lens) -> Self {
+        Self { lens, ..self }
+    }
+
+    /// Returns this camera with the lens of `other`.
     #[must_use]
     pub const fn with_lens_of(self, other: &Self) -> Self {
-        Self {
-            half_width: other.half_width,
-            near: other.near,
-            projection: other.projection,
-            ..self
-        }
+        self.with_lens(other.lens)
     }
 
     /// Returns the camera of one eye of a stereo pair: this camera with its eye moved by `aside` world units (at most 1) to the
     /// right, and the middle of the picture shifted by `shift` (at most 1 in magnitude).
     pub(crate) fn beside(&self, aside: Q32_32, shift: Q4_28) -> Self {
-        let eye = [0, 1, 2].map(|i: usize| {
-            // The product of the distance and u has 24 + 23 fraction bits, of which 32 remain, rounded down.
-            let along = (aside.to_bits().abs() >> 8) * i64::from(self.u[i].to_bits());
-            Q32_32::from_bits(self.eye[i].to_bits() + aside.to_bits().signum() * (along >> 15))
-        });
         Self {
-            eye,
-            shift,
+            eye: moved(self.eye, self.u, aside),
+            lens: self.lens.shifted(shift),
             ..*self
+        }
+    }
+
+    /// The eye, moved sideways to the middle of the picture in orthographic projection; parallel lines of sight have no other eye.
+    pub fn eye_of_middle(&self) -> [Q32_32; 3] {
+        let [right, down] = self.lens.middle().map(Q32_32::from);
+        match self.projection() {
+            Projection::Perspective => self.eye,
+            Projection::Orthographic => moved(moved(self.eye, self.u, right), self.v, down),
         }
     }
 
@@ -292,7 +287,7 @@ impl View {
 
     /// Whether the eye is within `distance` world units of the origin.
     pub fn is_within(&self, distance: u32) -> bool {
-        within(self.eye, distance)
+        is_within(self.eye, distance)
     }
 
     /// The direction in the world that points to the right of the screen.
@@ -310,31 +305,30 @@ impl View {
         self.n
     }
 
+    /// The lens: projection, window and near plane.
+    pub const fn lens(&self) -> &Lens {
+        &self.lens
+    }
+
     /// The projection.
     pub const fn projection(&self) -> Projection {
-        self.projection
+        self.lens.projection()
     }
 
     /// Half the width of the image plane in world units, from 0.0087 to 115: at distance 1 in perspective, at every distance in
     /// orthographic projection.
     pub const fn half_width(&self) -> U8_28 {
-        self.half_width
+        self.lens.half_width()
     }
 
     /// The distance of the near plane from the eye along `n`, in world units, from 0.01 to 2.
     pub const fn near(&self) -> U4_28 {
-        self.near
-    }
-
-    /// Shift of the picture's middle from the camera's axis `n`, along `u` at distance 1, in world units; at most 1 in magnitude.
-    /// The shift is 0 except for the eyes of a stereo pair.
-    pub const fn shift(&self) -> Q4_28 {
-        self.shift
+        self.lens.near()
     }
 }
 
-/// Writes the arguments of the console's command `view`: eye, u, v, n, half width, near plane, and for an orthographic camera the
-/// projection. Each number is the shortest decimal that reads back as the same bits.
+/// Writes the arguments of the console's command `view`: eye, u, v, n and the [`Lens`]. Each number is the shortest decimal that reads back
+/// as the same bits.
 impl fmt::Display for View {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         self.eye.iter().try_for_each(|x| write!(f, "{x} "))?;
@@ -342,11 +336,7 @@ impl fmt::Display for View {
             .as_flattened()
             .iter()
             .try_for_each(|x| write!(f, "{x} "))?;
-        write!(f, "{} {}", self.half_width, self.near)?;
-        match self.projection {
-            Projection::Perspective => Ok(()),
-            Projection::Orthographic => write!(f, " {}", self.projection),
-        }
+        self.lens.fmt(f)
     }
 }
 
@@ -361,6 +351,31 @@ fn across_axis(vector: [i32; 3]) -> [i32; 3] {
     } else {
         [0, 0, one]
     }
+}
+
+/// The tangent of half a field of view, with a relative error of at most 2^−22.
+///
+/// # Errors
+/// The angle is not from 1° to 179°.
+#[inline(never)]
+fn tangent_of_half(angle: Turns) -> Result<U8_28, ViewError> {
+    if !(FIELD_OF_VIEW[0]..=FIELD_OF_VIEW[1]).contains(&angle) {
+        return Err(ViewError::FieldOfView(angle));
+    }
+    let (sin, cos) = sines(Turns(angle.0 / 2));
+    // The cosine of an angle below 90° is at least 2^23 units, and the dividend is at most 2^59.
+    let tangent = ((sin << 29) / cos + 1) >> 1;
+    Ok(U8_28::from_bits(tangent.unsigned_abs()))
+}
+
+/// The place `by` world units (less than 8) from `place` along an axis of a camera. Each product is rounded down in magnitude.
+#[inline(never)]
+fn moved(place: [Q32_32; 3], axis: [Q2_23; 3], by: Q32_32) -> [Q32_32; 3] {
+    [0, 1, 2].map(|i: usize| {
+        // The product of the distance and the axis has 24 + 23 fraction bits, of which 32 remain, rounded down.
+        let along = (by.to_bits().abs() >> 8) * i64::from(axis[i].to_bits());
+        Q32_32::from_bits(place[i].to_bits() + by.to_bits().signum() * (along >> 15))
+    })
 }
 
 /// Returns sine and cosine of an angle, in units of 2^−30; the product of two such numbers is below 2^61.
@@ -385,7 +400,8 @@ fn scaled(r: Q32_32, x: i64) -> Q32_32 {
     Q32_32::from_bits(((i128::from(r.to_bits()) * i128::from(x) + (1 << 59)) >> 60) as i64)
 }
 
-fn within(place: [Q32_32; 3], distance: u32) -> bool {
+/// Whether a place is within `distance` world units of the origin.
+pub fn is_within(place: [Q32_32; 3], distance: u32) -> bool {
     let limit = u128::from(distance) << 32;
     // The square of each coordinate is at most 2^126, so the sum fits 128 bits.
     let squared: u128 = place
@@ -397,7 +413,7 @@ fn within(place: [Q32_32; 3], distance: u32) -> bool {
 }
 
 fn check_eye(eye: [Q32_32; 3]) -> Result<(), ViewError> {
-    if within(eye, MAX_EYE) {
+    if is_within(eye, MAX_EYE) {
         Ok(())
     } else {
         Err(ViewError::Eye(eye))

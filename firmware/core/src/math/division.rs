@@ -27,6 +27,24 @@ pub fn quotient(number: u64, divisor: u64) -> u64 {
     least + u64::from(number - least * divisor >= divisor)
 }
 
+/// The quotient with this number of fraction bits, at most 32, rounded down. The whole part saturates at 2^31 − 1. A divisor of 0 is replaced
+/// by 1, and a divisor has at most 63 bits.
+#[inline(never)]
+pub fn quotient_with_fraction(number: u64, divisor: u64, fraction: u32) -> u64 {
+    const LARGEST: u64 = (1 << 31) - 1;
+    let divisor = divisor.clamp(1, (1 << 63) - 1);
+    let whole = quotient(number, divisor);
+    let (mut all, mut rest) = (whole.min(LARGEST), number - whole * divisor);
+    for _ in 0..fraction {
+        // Below 2^64, because the rest is below the divisor.
+        rest *= 2;
+        let bit = rest >= divisor;
+        all = 2 * all + u64::from(bit);
+        rest -= if bit { divisor } else { 0 };
+    }
+    all
+}
+
 /// The quotient, rounded down, of a number and a divisor of at least 2^31. The number must be below the divisor times 2^32.
 // Not inlined, so that the callers' code takes few lines of the instruction cache.
 #[inline(never)]
@@ -78,5 +96,27 @@ mod tests {
             }
         }
         assert_eq!(quotient(7, 0), 7);
+    }
+
+    #[test]
+    fn fractions_are_rounded_down() {
+        let mut state = 2_u64;
+        let mut random = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            state.rotate_right(29) >> (state >> 58)
+        };
+        for _ in 0..200_000 {
+            let (number, divisor) = (random(), (random() >> 1).max(1));
+            for fraction in [0, 28, 32] {
+                let whole = (number / divisor).min((1 << 31) - 1);
+                let rest = u128::from(number % divisor) << fraction;
+                let expected = (u128::from(whole) << fraction) + rest / u128::from(divisor);
+                let found = quotient_with_fraction(number, divisor, fraction);
+                assert_eq!(u128::from(found), expected, "{number}/{divisor}");
+            }
+        }
+        assert_eq!(quotient_with_fraction(3, 0, 1), 6);
     }
 }

@@ -20,6 +20,7 @@ mod gesture_colours;
 mod image_sensor;
 mod imu;
 mod interrupts;
+mod lens;
 mod light;
 mod matrix;
 mod mesh;

@@ -1,7 +1,7 @@
 //! The directions of a frame's rays in full precision.
 
 use glint_core::camera::{Projection, View};
-use glint_core::fixed::Q2_23;
+use glint_core::fixed::{Q2_23, U8_28};
 use glint_core::picture::Window;
 
 use crate::error::{FIELD_HALF_WIDTH, RenderError};
@@ -24,16 +24,19 @@ impl Directions {
     /// Computes the directions for the cameras of two eyes, which differ only in position and shift, or for one camera given twice.
     pub fn new(eyes: &[View; 2], window: Window) -> Self {
         let ([view, _], [width, height]) = (eyes, window.picture());
-        let half_width = view.half_width().to_bits() as i64;
-        // The width of the picture at distance 1 divided by the number of pixels; the dividend is below 2^54.
-        let step = |row: [Q2_23; 3]| {
-            row.map(|x| (2 * half_width * i64::from(x.to_bits())) / i64::from(width))
+        // Twice a length in the window divided by twice its number of pixels; the dividend is below 2^54.
+        let step = |row: [Q2_23; 3], (pixels, length): (u32, U8_28)| {
+            let length = length.to_bits() as i64;
+            row.map(|x| (2 * length * i64::from(x.to_bits())) / i64::from(2 * pixels))
         };
-        let (across, down) = (step(view.u()), step(view.v()));
+        let [of_width, of_height] = view.lens().scales([width, height]);
+        let (across, down) = (step(view.u(), of_width), step(view.v(), of_height));
         let first = eyes.map(|eye| {
+            let [right, below] = eye.lens().middle().map(|x| i64::from(x.to_bits()));
             [0, 1, 2].map(|i: usize| {
                 (i64::from(view.n()[i].to_bits()) << 28)
-                    + i64::from(eye.shift().to_bits()) * i64::from(view.u()[i].to_bits())
+                    + right * i64::from(view.u()[i].to_bits())
+                    + below * i64::from(view.v()[i].to_bits())
                     - (i64::from(width - 1) * across[i] + i64::from(height - 1) * down[i]) / 2
             })
         });
@@ -73,13 +76,24 @@ impl Directions {
 /// Checks that a field can be drawn with this camera.
 ///
 /// # Errors
-/// [`RenderError::Orthographic`], and [`RenderError::HalfWidth`] for a camera that is too narrow or too wide.
+/// [`RenderError::Orthographic`], [`RenderError::HalfWidth`] for a camera that is too narrow or too wide, and [`RenderError::Sides`] for
+/// one whose window is too low, too high or too far from its axis.
 pub(super) fn check(view: &View) -> Result<(), RenderError> {
     if view.projection() == Projection::Orthographic {
         return Err(RenderError::Orthographic);
     }
-    if !(FIELD_HALF_WIDTH[0]..=FIELD_HALF_WIDTH[1]).contains(&view.half_width()) {
-        return Err(RenderError::HalfWidth(view.half_width()));
+    let lens = view.lens();
+    let [least, most] = FIELD_HALF_WIDTH;
+    if !(least..=most).contains(&lens.half_width()) {
+        return Err(RenderError::HalfWidth(lens.half_width()));
+    }
+    let middle = lens.middle().map(|x| U8_28::from(x.unsigned_abs()));
+    let half = [lens.half_width(), lens.half_height()];
+    let is_within = |(middle, half): (U8_28, U8_28)| middle + half <= most;
+    // A half height of 9/16 of the least half width, rounded to nearest, as with square pixels.
+    let is_high = lens.half_height().to_bits() >= (9 * least.to_bits() + 8) >> 4;
+    if !is_high || !core::iter::zip(middle, half).all(is_within) {
+        return Err(RenderError::Sides);
     }
     Ok(())
 }

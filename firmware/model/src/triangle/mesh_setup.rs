@@ -1,7 +1,7 @@
 //! The frame constants of a mesh, computed once from the camera and the size of the picture.
 
-use glint_core::camera::{Projection, View};
-use glint_core::fixed::{Q2_23, Q32_32, U4_28};
+use glint_core::camera::{Lens, Projection, View, is_within};
+use glint_core::fixed::{Q2_23, Q4_28, Q32_32, U4_28, U8_28};
 use glint_core::picture::Window;
 
 use crate::depth::DepthScale;
@@ -25,10 +25,10 @@ pub struct MeshSetup {
     pub scale_shift: u32,
     /// The projection.
     pub projection: Projection,
-    /// The camera's right axis u, or u − shift·n for one of two eyes, scaled to pixels at distance 1: f fraction bits (f is
-    /// `scale_shift`), 25 bits.
+    /// The camera's right axis u, in perspective less the middle of the window times n, scaled to pixels at distance 1: f fraction bits (f
+    /// is `scale_shift`), 25 bits.
     pub u: [i32; 3],
-    /// The camera's down axis, scaled to pixels at distance 1: f fraction bits (f is `scale_shift`), 25 bits.
+    /// The camera's down axis, as `u`.
     pub v: [i32; 3],
     /// The camera's forward axis, s2.23.
     pub n: [i32; 3],
@@ -58,7 +58,7 @@ impl MeshSetup {
     /// [`SIZES`](crate::SIZES), and a mesh with the given `radius` (14 fraction bits).
     ///
     /// # Errors
-    /// [`RenderError::Size`], [`RenderError::Eye`] or [`RenderError::Near`].
+    /// [`RenderError::Size`], [`RenderError::Eye`], [`RenderError::Window`] or [`RenderError::Near`].
     pub fn new(view: &View, width: u32, height: u32, radius: u32) -> Result<Self, RenderError> {
         let mut setup = Self::default();
         let window = whole_picture((width, height))?;
@@ -78,10 +78,14 @@ impl MeshSetup {
         radius: u32,
         scale: &mut Scale,
     ) -> Result<(), RenderError> {
-        if !view.is_within(MAX_EYE) {
-            return Err(RenderError::Eye(view.eye()));
+        let eye = view.eye_of_middle();
+        if !is_within(eye, MAX_EYE) {
+            return Err(RenderError::Eye(eye));
         }
-        scale.update(window.picture()[0], view);
+        scale.update(window.picture(), view.lens());
+        if scale.shift < LEAST_SHIFT {
+            return Err(RenderError::Window);
+        }
         let projection = view.projection();
         if projection == Projection::Perspective {
             // The vertex stage shifts X and Y right by at least 6 bits.
@@ -95,8 +99,7 @@ impl MeshSetup {
         (self.picture, self.middle) = (window.picture(), window.middle());
         self.scale_shift = scale.shift;
         self.projection = projection;
-        self.u = across(view).map(|r| scale.scaled(r));
-        self.v = view.v().map(|r| scale.scaled(r));
+        [self.u, self.v] = scale.rows(view);
         self.n = view.n().map(Q2_23::to_bits);
         // The eye C is within 8 world units of the origin, which is 2^35 with its 32 fraction bits, and a row is shorter
         // than 2^24.5: |C·row| < 2^60.
@@ -190,17 +193,56 @@ const LEAST_EXPONENT: i32 = -6;
 /// The smallest exponent ke of an orthographic frame with objects. Each object subtracts up to 6 from ke.
 const LEAST_OF_OBJECTS: i32 = 0;
 
-/// The scale s·2^f (docs/formats/camera.md, "Frame constants") as the fraction (W/2)·2^(28 + f)/h, where W is the width of the
-/// picture and h the half width of the view with 28 fraction bits.
+/// The smallest scale shift: with fewer fraction bits the products of the clipper do not fit 64 bits.
+const LEAST_SHIFT: u32 = 6;
+
+/// The scales s·2^f across and down (docs/formats/camera.md, "Frame constants").
 ///
-/// It depends only on the width of the picture and the half width, and is cached because it needs a division.
+/// They are cached because they need divisions.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scale {
-    width: u32,
-    is_shifted: bool,
+    key: Key,
     shift: u32,
+    axes: [Axis; 2],
+}
+
+/// The numbers on which the scales depend.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Key {
+    /// Numbers of pixels, and their lengths in the window, across and down.
+    scales: [(u32, U8_28); 2],
+    /// The largest integer whose product with c of [`Scale::new`] is below 2^24.
+    largest: i64,
+}
+
+impl Key {
+    fn new(size: [u32; 2], lens: &Lens) -> Self {
+        /// The largest integer whose product with 1 + 2^−12 is below 2^24.
+        const LARGEST: i64 = ((1 << 36) - 1) / 4097;
+        // An orthographic window moves the translations instead of the rows.
+        let [across, down] = match lens.projection() {
+            Projection::Perspective => lens.middle().map(Q4_28::unsigned_abs),
+            Projection::Orthographic => [U4_28::ZERO; 2],
+        };
+        let middle = across.max(down);
+        let mut largest = LARGEST;
+        if middle != 0 {
+            // 29/41 is slightly less than 1/√2.
+            largest = LARGEST * 29 / 41;
+            largest >>= (0..3).take_while(|k| middle > 1 << k).count();
+        }
+        Self {
+            scales: lens.scales(size),
+            largest,
+        }
+    }
+}
+
+/// A scale s·2^f as the fraction P·2^(28 + f)/h, where P is a number of pixels and h their length in the window, with 28 fraction bits.
+#[derive(Clone, Copy, Debug, Default)]
+struct Axis {
     numerator: i64,
-    half_width: i64,
+    length: i64,
     /// ceil(s·2^24), below 2^41.
     whole: i64,
     /// ceil(s·2^(f + 6)), below 2^30.
@@ -208,94 +250,135 @@ pub(crate) struct Scale {
 }
 
 impl Scale {
-    /// Updates the scale for a picture of this width and a view, if either has changed.
-    fn update(&mut self, width: u32, view: &View) {
-        let half_width = view.half_width().to_bits() as i64;
-        let is_shifted = view.shift() != 0;
-        if (self.width, self.half_width, self.is_shifted) != (width, half_width, is_shifted) {
-            *self = Self::new(width, half_width, is_shifted);
+    /// Updates the scales for a picture of this size and a lens, if either has changed.
+    fn update(&mut self, size: [u32; 2], lens: &Lens) {
+        let key = Key::new(size, lens);
+        if self.key != key {
+            *self = Self::new(key);
         }
     }
 
-    /// Finds the largest f up to 18 with ceil(s·2^f)·c < 2^24, where c is 1 + 2^−12, or √2·(1 + 2^−12) for a shifted picture.
+    /// Finds the largest f up to 18 with ceil(s·2^f)·c < 2^24 for both scales, where c is 1 + 2^−12 for a window whose middle is on the
+    /// camera's axis, and otherwise √2·2^k·(1 + 2^−12), with the smallest k for which its middle is within 2^k of the axis.
     ///
-    /// s is in [1.39, 147128], so f is in 6…18. A component of the basis is at most 1 + 10^−4, which is below 1 + 2^−12. With a shift of at
-    /// most 1, a component of u − shift·n is at most √2 times this bound.
-    // Not inlined, because most frames reuse the scale of the previous frame.
+    /// s is in [1.39, 147128], so f is in 6…18 for a window whose middle is within 1. A component of the basis is at most 1 + 10^−4, which
+    /// is below 1 + 2^−12. A component of u − m·n is at most √2·2^k times this bound for |m| ≤ 2^k.
+    // Not inlined, because most frames reuse the scales of the previous frame.
     #[inline(never)]
-    fn new(width: u32, half_width: i64, is_shifted: bool) -> Self {
-        /// The largest integer whose product with 1 + 2^−12 is below 2^24.
-        const LARGEST: i64 = ((1 << 36) - 1) / 4097;
-        // 29/41 is slightly less than 1/√2.
-        let largest = if is_shifted {
-            LARGEST * 29 / 41
+    fn new(key: Key) -> Self {
+        let [(pixels, length), other] = key.scales;
+        let across = Axis::whole(pixels, length);
+        let down = if key.scales[0] == other {
+            across
         } else {
-            LARGEST
+            Axis::whole(other.0, other.1)
         };
-        let numerator = |shift| i64::from(width / 2) << (28 + shift);
-        // `ceil` is ceil(s·2^24), which has at least 25 bits. Shifted right and rounded up it is ceil(s·2^f) for a smaller f. Either its
-        // leading 24 bits or its leading 23 bits are then at most `largest`.
-        let whole: i64 = (numerator(24) + half_width - 1) / half_width;
-        let cut = (whole.ilog2() - 23).max(6);
-        let cut = cut + u32::from(whole > largest << cut);
-        let spare = cut - 6;
+        // `whole` is ceil(s·2^24), which has at least 25 bits. Shifted right and rounded up it is ceil(s·2^f) for a smaller f. Either its
+        // leading 24 bits or its leading 23 bits are then at most LARGEST; fewer for a smaller limit.
+        let whole = across.whole.max(down.whole);
+        let mut cut = (whole.ilog2() - 23).max(6);
+        while whole > key.largest << cut {
+            cut += 1;
+        }
+        let axes = [(across, pixels), (down, other.0)].map(|(axis, pixels)| axis.cut(pixels, cut));
         Self {
-            width,
-            is_shifted,
+            key,
             shift: 24 - cut,
-            numerator: numerator(24 - cut),
-            half_width,
-            whole,
-            ceil: (whole + (1 << spare) - 1) >> spare,
+            axes,
         }
     }
 
-    /// Replaces the translations −C·u·s and −C·v·s by translations computed from the exact axes, within 2^−20 pixel.
+    /// The scaled rows of the camera's axes u and v.
+    fn rows(&self, view: &View) -> [[i32; 3]; 2] {
+        let [u, v] = aside(view);
+        let [across, down] = &self.axes;
+        [u.map(|r| across.scaled(r)), v.map(|r| down.scaled(r))]
+    }
+
+    /// Replaces the translations −C·u·s and −C·v·s by translations to the middle of the window, computed from the exact axes, within
+    /// 2^−20 pixel.
     ///
     /// In orthographic projection the rounding error of a row is not divided by the distance to the eye. With exact translations the error
     /// is proportional to the position in the mesh, and not to its distance from the eye.
     #[inline(never)]
     fn place(&self, view: &View, translation: &mut [i64; 3]) {
         let eye = view.eye().map(Q32_32::to_bits);
-        for (axis, translation) in [view.u(), view.v()].into_iter().zip(translation) {
+        let axes = [view.u(), view.v()].into_iter().zip(view.lens().middle());
+        for ((axis, middle), (scale, translation)) in axes.zip(self.axes.iter().zip(translation)) {
             // |C·axis| is below 2^58.1 in units of 2^−55 and is rounded to 40 fraction bits; s·2^24 is below 2^41.
             let along = nearest(-dot(eye, &axis.map(Q2_23::to_bits)), 15);
-            let pixels = i128::from(along) * i128::from(self.whole);
+            let along = along - (i64::from(middle.to_bits()) << 12);
+            let pixels = i128::from(along) * i128::from(scale.whole);
             let shift = 50 - self.shift;
             *translation = ((pixels + (1 << (shift - 1))) >> shift) as i64;
         }
     }
+}
 
-    /// Scales a component r of an axis of the view: nearest(r·s·2^f), the quotient of 2·r·(numerator/2^23) + h and 2h, rounded
+impl Axis {
+    /// The scale of `pixels` pixels, at most 2^11, of this length, before the choice of f.
+    fn whole(pixels: u32, length: U8_28) -> Self {
+        let length = length.to_bits() as i64;
+        let whole = (Self::numerator(pixels, 24) + length - 1) / length;
+        Self {
+            length,
+            whole,
+            ..Self::default()
+        }
+    }
+
+    const fn numerator(pixels: u32, shift: u32) -> i64 {
+        (pixels as i64) << (28 + shift)
+    }
+
+    /// The scale for f = 24 − `cut`.
+    const fn cut(self, pixels: u32, cut: u32) -> Self {
+        let spare = cut - 6;
+        Self {
+            numerator: Self::numerator(pixels, 24 - cut),
+            ceil: (self.whole + (1 << spare) - 1) >> spare,
+            ..self
+        }
+    }
+
+    /// Scales a component r of a row of the view: nearest(r·s·2^f), the quotient of 2·r·(numerator/2^23) + h and 2h, rounded
     /// down.
     ///
     /// The soft core divides 64-bit numbers in software, in 1,200 clocks, so only `ceil` is computed by a division. The product
-    /// r·ceil(s·2^(f + 6)) differs from r·s·2^(f + 6) by at most |r| < 2^23.51, which is 2^−5 of the quotient's last place. Rounded down,
+    /// r·ceil(s·2^(f + 6)) differs from r·s·2^(f + 6) by at most |r| < 2^27, which is a quarter of the quotient's last place. Rounded down,
     /// it is therefore the quotient, or 1 less; the remainder distinguishes the two cases.
     // Not inlined: the soft core fetches code that runs once per frame from main memory, so smaller code is faster.
     #[inline(never)]
     fn scaled(&self, r: Q2_23) -> i32 {
-        let divisor = 2 * self.half_width;
+        let divisor = 2 * self.length;
         let r = i64::from(r.to_bits());
         let quotient = (r * self.ceil) >> (23 + 6);
-        // The dividend is below 2^26·2^10·2^23.
-        let dividend = 2 * r * (self.numerator >> 23) + self.half_width;
+        // |r|·s·2^f is below 2^47, so the dividend is below 2^25·h + h, and h below 2^35.
+        let dividend = 2 * r * (self.numerator >> 23) + self.length;
         let is_less = dividend - quotient * divisor >= divisor;
         (quotient + i64::from(is_less)) as i32
     }
 }
 
-/// The row u − shift·n, which makes x = 0 the middle of a shifted picture; the camera's right axis u without a shift.
-fn across(view: &View) -> [Q2_23; 3] {
-    let (u, n, shift) = (view.u(), view.n(), i64::from(view.shift().to_bits()));
-    [0, 1, 2].map(|i: usize| {
-        // The product has 28 + 23 fraction bits and is rounded to nearest.
-        let aside = (shift * i64::from(n[i].to_bits()) + (1 << 27)) >> 28;
-        Q2_23::from_bits(u[i].to_bits() - aside as i32)
+/// The rows u − m·n and v − m·n, which make x = 0 and y = 0 the middle m of the window in perspective; the camera's axes u and v for a window
+/// whose middle is on the axis n, and in orthographic projection.
+fn aside(view: &View) -> [[Q2_23; 3]; 2] {
+    let (rows, n) = ([view.u(), view.v()], view.n());
+    let middle = view.lens().middle();
+    if middle == [Q4_28::ZERO; 2] || view.projection() == Projection::Orthographic {
+        return rows;
+    }
+    [0, 1].map(|row: usize| {
+        [0, 1, 2].map(|i: usize| {
+            // The product has 28 + 23 fraction bits and is rounded to nearest.
+            let aside = i64::from(middle[row].to_bits()) * i64::from(n[i].to_bits());
+            let aside = (aside + (1 << 27)) >> 28;
+            Q2_23::from_bits(rows[row][i].to_bits() - aside as i32)
+        })
     })
 }
 
-/// The scalar product. Not inlined, for the reason given at [`Scale::scaled`].
+/// The scalar product. Not inlined, for the reason given at [`Axis::scaled`].
 #[inline(never)]
 fn dot(a: [i64; 3], b: &[i32; 3]) -> i64 {
     core::iter::zip(a, b).map(|(a, &b)| a * i64::from(b)).sum()

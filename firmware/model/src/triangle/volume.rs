@@ -16,6 +16,16 @@ pub enum Clip {
     },
 }
 
+impl Clip {
+    /// Clipping to the view volume up to a far plane at this distance from the eye, in world units; without one, the default.
+    pub const fn to(far: Option<U8_28>) -> Self {
+        match far {
+            None => Self::Guard,
+            Some(far) => Self::View { far },
+        }
+    }
+}
+
 /// The volume to which triangles are clipped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Volume {

@@ -28,6 +28,7 @@ mod textured;
 mod volume;
 mod walker;
 mod winding;
+mod windows;
 mod wireframe;
 
 use glint_core::fixed::Q8_24;

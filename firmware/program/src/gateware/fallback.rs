@@ -106,6 +106,8 @@ impl From<RenderError> for Fallback {
             | RenderError::Width { .. }
             | RenderError::Orthographic
             | RenderError::HalfWidth(_)
+            | RenderError::Sides
+            | RenderError::Window
             | RenderError::Objects(_)
             | RenderError::Stereo => EngineError::from(Error::Size).into(),
         }

@@ -10,7 +10,7 @@ use glint::convert::TextureReport;
 use glint::error::InputError;
 use glint::render::Frame;
 use glint::view;
-use glint_core::camera::View;
+use glint_core::camera::{View, is_within};
 use glint_core::fixed::Turns;
 use glint_core::framing::{self, BoundingSphere, FramingError};
 use glint_core::matrix::{Axis, Matrix};
@@ -34,7 +34,7 @@ pub struct CameraArguments {
         allow_hyphen_values = true
     )]
     look: Option<String>,
-    /// A camera from a file: {"eye":[x,y,z],"u":[..],"v":[..],"n":[..],"half_width":h,"near":z,"projection":"perspective"}.
+    /// A camera from a file: {"eye":[x,y,z],"u":[..],"v":[..],"n":[..],"half_width":h,"near":z,"projection":"perspective","half_height":h,"middle":[x,y]}.
     #[arg(long, value_name = "VIEW.json", conflicts_with_all = ["camera", "lookat", "up"])]
     view: Option<PathBuf>,
     /// The axis of the model that points up on the screen if no camera is given [default: y for .obj, .gltf and .glb, otherwise
@@ -71,6 +71,9 @@ impl CameraArguments {
     pub fn view(&self, options: &OptionArguments, shown: &CameraSubject) -> anyhow::Result<View> {
         if shown.scene.is_some() && self.up.is_some() {
             return Err(bad_value("--up", "a model", "a --scene").into());
+        }
+        if shown.scene.is_some() && options.has_far_plane() {
+            return Err(bad_value("--projection", "no far plane beside --scene", "FAR").into());
         }
         if self.is_free(options, shown) {
             let up = self.up_of(shown.model);
@@ -202,10 +205,11 @@ fn turn(first: &View, steps: u16) -> anyhow::Result<Vec<View>> {
 fn check_eye(view: &View, shown: &CameraSubject, source: &str) -> anyhow::Result<()> {
     let eyes = shown.frame.stereo;
     let eyes = eyes.map_or([*view; 2], |stereo| stereo.eyes(view));
-    let far = eyes.iter().find(|eye| !eye.is_within(MAX_EYE));
+    let mut eyes = eyes.iter().map(View::eye_of_middle);
+    let far = eyes.find(|eye| !is_within(*eye, MAX_EYE));
     let has_mesh = shown.scene.is_none() && shown.frame.subject.meshes().next().is_some();
     if let Some(eye) = far.filter(|_| has_mesh) {
-        let found = RenderError::Eye(eye.eye()).to_string();
+        let found = RenderError::Eye(eye).to_string();
         return Err(bad_value(source, "a camera", found).into());
     }
     Ok(())

@@ -133,12 +133,14 @@ impl Given {
         bad_value(&name, self.option.expected, found)
     }
 
-    /// The console lines that set the values. The numbers of a camera are separated by commas on
-    /// the command line, and by spaces on the console.
+    /// The console lines that set the values. The numbers of a camera and its lens are separated by commas on the command line, and by
+    /// spaces on the console.
     fn lines(&self) -> impl Iterator<Item = String> {
         self.values.iter().map(|value| match self.row.forms.order {
-            Order::Camera => format!("{} {}", self.row.command, value.replace(',', " ")),
-            Order::Size | Order::Lens | Order::Option | Order::Subject | Order::Fit => {
+            Order::Camera | Order::Lens => {
+                format!("{} {}", self.row.command, value.replace(',', " "))
+            }
+            Order::Size | Order::Option | Order::Subject | Order::Fit => {
                 format!("{} {value}", self.row.command)
             }
         })
@@ -205,11 +207,16 @@ impl OptionArguments {
         self.get(name).is_some()
     }
 
-    /// Sets the given options in `scene`, except options of camera and lens.
+    /// Sets the given options in `scene`, except camera and lens; but with the far plane of a projection.
     ///
     /// # Errors
     /// A value is invalid, or the option requires a field.
     pub fn apply(&self, scene: &mut Scene) -> Result<(), InputError> {
+        if let Some(projection) = self.get("projection") {
+            let view = scene.view;
+            projection.apply(scene)?;
+            scene.view = view;
+        }
         let given = self.given.iter();
         for given in given.filter(|given| given.row.forms.order == Order::Option) {
             given.check(scene.field.is_some())?;
@@ -234,6 +241,16 @@ impl OptionArguments {
         Ok(scene.view)
     }
 
+    /// Whether a given projection has a far plane.
+    pub fn has_far_plane(&self) -> bool {
+        let projection = self.get("projection");
+        projection.is_some_and(|given| {
+            let line = given.lines().collect::<String>();
+            let setting = given.setting(&line, "");
+            matches!(setting, Ok(Setting::Projection { volume }) if volume.far.is_some())
+        })
+    }
+
     /// The given field of view.
     ///
     /// # Errors
@@ -244,7 +261,9 @@ impl OptionArguments {
         };
         let line = given.lines().collect::<String>();
         Ok(match given.setting(&line, &given.values.concat())? {
-            Setting::FieldOfView { angle } => Some(angle),
+            Setting::FieldOfView {
+                angles: (across, _),
+            } => Some(across),
             _ => None,
         })
     }

@@ -30,4 +30,5 @@ mod stereo;
 mod terminal;
 mod transfers;
 mod uploads;
+mod windows;
 mod wireframes;

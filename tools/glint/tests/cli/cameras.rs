@@ -51,6 +51,83 @@ fn the_whole_model_fills_the_picture() {
     assert_has(&error, "error: --zoom: expected a factor");
 }
 
+/// The sides of a volume, its matrix, and field of view, near and far plane give the same picture; each number of the volume has an effect.
+#[test]
+fn projections() {
+    let folder = folder("projections");
+    let picture = |options: &str| {
+        let command =
+            "render icosphere:8 --size 320x180 --aa 1 --background 000000 --camera 2,0,90";
+        drawn(&folder, &format!("{command} {options}"))
+    };
+    let sides = "--projection perspective,-0.25,0.25,-0.140625,0.140625,0.25";
+    let whole = picture("--fov 90 --near 0.25");
+    assert_eq!(picture(sides), whole);
+    let matrix = "--projection matrix,1,0,0,0,0,1.7777777778,0,0,0,0,-1,-0.5,0,0,-1,0";
+    assert_eq!(picture(matrix), whole);
+    let cut = picture("--fov 90 --near 0.25 --far 1.75");
+    assert_eq!(picture(&format!("{sides},1.75")), cut);
+    // The outline of the sphere is at the depth 1.875.
+    let [high, cut_high] = [whole.as_slice(), &cut].map(|picture| {
+        let [[top, bottom], _] = extent(picture);
+        bottom + 1 - top
+    });
+    assert!(
+        cut_high < high && cut_high > high / 2,
+        "{cut_high} of {high}"
+    );
+    assert_ne!(picture("--fov 90 --near 1.75"), whole);
+
+    // Square fields of view make pixels of 16:9, and the picture's middle is where the sides say.
+    let [[top, bottom], [left, right]] = extent(&picture("--fov 90,90"));
+    let (high, wide) = (bottom + 1 - top, right + 1 - left);
+    assert!((16 * high).abs_diff(9 * wide) <= 16, "{wide} x {high}");
+    let aside = "--projection orthographic,-0.5,1.5,-1.25,0.75,0.25";
+    let [[top, bottom], [left, right]] = extent(&picture(aside));
+    // A sphere of radius 1/2 about 0: of the width 80 pixels from 0, of the height 45 from 3/4 · 90.
+    assert!(left <= 1 && right.abs_diff(159) <= 1, "{left} to {right}");
+    assert!(
+        top.abs_diff(22) <= 1 && bottom.abs_diff(112) <= 1,
+        "{top} to {bottom}"
+    );
+
+    for (options, expected) in [
+        (
+            "--near 3",
+            "error: --near: expected a distance of 0.01 to 2, found near 3: expected 0.01 to 2",
+        ),
+        (
+            "--projection perspective,1,-1,0,1,0.1",
+            "left 1, right -1: expected left below right",
+        ),
+        (
+            "--projection matrix,1,2,3",
+            "error: --projection: expected perspective or orthographic,LEFT",
+        ),
+        (
+            "--scene holoforge --projection perspective,-1,1,-1,1,0.5,9",
+            "expected no far plane beside --scene",
+        ),
+        (
+            "--field box:1,1,1 --projection orthographic,-1,1,-1,1,0.5",
+            "expected perspective",
+        ),
+        (
+            "--field box:1,1,1 --projection perspective,0,5,-1,1,1",
+            "within 4 of the camera's axis",
+        ),
+    ] {
+        let subject = if options.contains("--scene") {
+            ""
+        } else {
+            "cube"
+        };
+        let command = format!("render {subject} {options} --out refused.png");
+        let error = failed(&folder, &command, 2);
+        assert_has(&error, expected);
+    }
+}
+
 #[test]
 fn the_axis_that_is_up() {
     let folder = folder("up");

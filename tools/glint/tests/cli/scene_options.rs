@@ -47,6 +47,8 @@ fn scenes_of_meshes_are_those_of_render() {
         model = "a.obj" → inner/a.obj
         model = "a.stl"; up = "x"; shading = "smooth" → inner/a.stl --up x --shading smooth
         model = "a.obj"; fov = 40; zoom = 1.5 → inner/a.obj --fov 40 --zoom 1.5
+        model = "a.obj"; fov = "40 30"; near = 0.5 → inner/a.obj --fov 40,30 --near 0.5
+        model = "a.stl"; camera = "3 20 60"; projection = "orthographic -1 1.5 -1 1 2 3" → inner/a.stl --camera 3,20,60 --projection orthographic,-1,1.5,-1,1,2,3
         model = "a.stl"; orthographic = 2 → inner/a.stl --orthographic 2
         model = "a.stl"; material = "gold" → inner/a.stl --material gold
         model = "teapot"; material = "jade"; camera = "3 20 60" → teapot --material jade --camera 3,20,60 --shading flat

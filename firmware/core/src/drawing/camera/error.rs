@@ -2,7 +2,8 @@
 
 use core::fmt;
 
-use super::limits::{FIELD_OF_VIEW, HALF_WIDTH, MAX_EYE, NEAR, RADIUS, WIDTH};
+use super::limits::{FIELD_OF_VIEW, HALF_HEIGHT, HALF_WIDTH, MAX_EYE, MIDDLE, NEAR, RADIUS, WIDTH};
+use super::projection::Projection;
 use crate::fixed::{Q2_23, Q32_32, Turns, U4_28, U8_28};
 
 /// One of the three vectors of a camera's basis.
@@ -24,6 +25,15 @@ impl fmt::Display for BasisVector {
             Self::N => "n",
         })
     }
+}
+
+/// The left or the lower side of a window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// The left side, whose opposite is the right one.
+    Left,
+    /// The lower side, whose opposite is the upper one.
+    Bottom,
 }
 
 /// Reason why numbers do not describe a camera.
@@ -51,8 +61,39 @@ pub enum ViewError {
     Mirrored,
     /// The half width is out of range.
     HalfWidth(U8_28),
+    /// The half height is out of range.
+    HalfHeight(U8_28),
+    /// A coordinate of the middle of the picture is out of range.
+    Middle(Q32_32),
+    /// A side of the window is not beyond its opposite.
+    Sides {
+        /// The left or the lower side.
+        low: Side,
+        /// Its coordinate.
+        least: Q32_32,
+        /// Coordinate of the opposite side.
+        most: Q32_32,
+    },
+    /// An entry of a matrix that is no projection.
+    Matrix {
+        /// The projection of matrices with its entry in row 4, column 3, zero or not.
+        projection: Projection,
+        /// Number of the entry, row by row, from 0.
+        place: u8,
+        /// The entry.
+        found: Q32_32,
+        /// What the entry of a projection is.
+        expected: &'static str,
+    },
     /// The near plane is out of range.
     Near(U4_28),
+    /// The far plane is not beyond the near plane.
+    Far {
+        /// Distance of the near plane.
+        near: U4_28,
+        /// Distance of the far plane.
+        far: U8_28,
+    },
     /// The direction of the gaze is 0.
     Gaze,
     /// The direction that points up on the screen is 0.
@@ -91,6 +132,39 @@ impl fmt::Display for ViewError {
                 "half_width {x}: expected {} to {}",
                 HALF_WIDTH[0], HALF_WIDTH[1]
             ),
+            Self::HalfHeight(x) => write!(
+                f,
+                "half_height {x}: expected {} to {}",
+                HALF_HEIGHT[0], HALF_HEIGHT[1]
+            ),
+            Self::Middle(x) => write!(
+                f,
+                "middle of the picture {x} from the camera's axis: expected within {MIDDLE}"
+            ),
+            Self::Sides { low, least, most } => {
+                let (low, high) = match low {
+                    Side::Left => ("left", "right"),
+                    Side::Bottom => ("bottom", "top"),
+                };
+                write!(
+                    f,
+                    "{low} {least}, {high} {most}: expected {low} below {high}"
+                )
+            }
+            Self::Matrix {
+                projection,
+                place,
+                found,
+                expected,
+            } => write!(
+                f,
+                "row {}, column {} is {found}: expected {expected} in {projection} projection",
+                place / 4 + 1,
+                place % 4 + 1
+            ),
+            Self::Far { near, far } => {
+                write!(f, "far {far}: expected beyond the near plane, {near}")
+            }
             Self::Width(x) => write!(f, "width {x}: expected {} to {}", WIDTH[0], WIDTH[1]),
             Self::Near(x) => write!(f, "near {x}: expected {} to {}", NEAR[0], NEAR[1]),
             Self::Radius(r) => write!(f, "radius {r}: expected {} to {}", RADIUS[0], RADIUS[1]),

@@ -1,10 +1,10 @@
 //! Tests of every command with its arguments.
 
-use glint_core::camera::{Projection, View};
+use glint_core::camera::{Lens, Projection, Sides, View, ViewVolume};
 use glint_core::colour::Rgb565;
 use glint_core::console::{Command, GestureAction, LINE_MAX, ObjectAction, Setting, write_help};
 use glint_core::field::{Field, Menger};
-use glint_core::fixed::{Q2_23, Q8_24, Q32_32, Turns, U4_28, U8_28};
+use glint_core::fixed::{Q2_23, Q4_28, Q8_24, Q32_32, Turns, U4_28, U8_28};
 use glint_core::light::{Light, Material};
 use glint_core::matrix::{Axis, Matrix};
 use glint_core::object::Place;
@@ -63,10 +63,19 @@ proptest! {
 
     /// The printed form of a view, given to the command `view`, sets the same view again.
     #[test]
-    fn views_come_back_bit_for_bit(r in 2_i64 << 32..=5 << 32, theta in any::<u32>(), phi in 0..=1_u32 << 31) {
+    fn views_come_back_bit_for_bit(
+        r in 2_i64 << 32..=5 << 32, theta in any::<u32>(), phi in 0..=1_u32 << 31,
+        half in [1_u64 << 24..1 << 34, 1 << 24..1 << 34], middle in [-6_i32 << 28..=6 << 28, -6 << 28..=6 << 28], is_centred in any::<bool>(),
+    ) {
         let view = View::spherical(Q32_32::from_bits(r), Turns(theta), Turns(phi)).expect("in range");
+        let middle = middle.map(|x| Q4_28::from_bits(if is_centred { 0 } else { x }));
         for projection in Projection::ALL {
             let view = view.with_projection(projection);
+            let lens = Lens::window(projection, half.map(U8_28::from_bits), middle.map(Into::into), view.near()).expect("in range");
+            let wide = view.with_lens(lens);
+            let line = format!("view {wide}");
+            prop_assert!(line.len() <= LINE_MAX);
+            prop_assert_eq!(Command::parse(&line).map_err(|error| error.to_string()), Ok(Some(Setting::View { view: wide }.into())));
             let line = format!("view {view}");
             prop_assert!(line.len() <= LINE_MAX);
             prop_assert_eq!(Command::parse(&line).map_err(|error| error.to_string()), Ok(Some(Setting::View { view }.into())));
@@ -314,7 +323,45 @@ fn numbers_and_angles_are_understood() {
     let far = Some(U8_28::lit("2.5"));
     assert_parses("clip 2.5", Setting::Clip { far });
     let angle = degrees(150);
-    assert_parses("fov 150", Setting::FieldOfView { angle });
+    assert_parses(
+        "fov 150",
+        Setting::FieldOfView {
+            angles: (angle, None),
+        },
+    );
+    let angles = (angle, Some(Turns::from_degrees(Q32_32::lit("112.5"))));
+    assert_parses("fov 150 112.5", Setting::FieldOfView { angles });
+    let [left, right, bottom, top] = ["-0.2", "0.1", "-0.1", "0.15"].map(Q32_32::lit);
+    let sides = Sides {
+        left,
+        right,
+        bottom,
+        top,
+    };
+    for (kind, projection) in [
+        ("perspective", Projection::Perspective),
+        ("orthographic", Projection::Orthographic),
+    ] {
+        for (word, far) in [("", None), (" 7", Some(U8_28::lit("7")))] {
+            let volume =
+                ViewVolume::of_sides(projection, sides, U4_28::lit("0.1"), far).expect("a volume");
+            let line = format!("projection {kind} -0.2 0.1 -0.1 0.15 0.1{word}");
+            assert_parses(&line, Setting::Projection { volume });
+        }
+    }
+    let matrix = [[2, 0, 0, 0], [0, 3, 0, 0], [0, 0, -1, -1], [0, 0, -1, 0]]
+        .map(|row| row.map(Q32_32::from_num));
+    let volume = ViewVolume::of_matrix(&matrix).expect("a projection");
+    assert_parses(
+        "projection matrix 2 0 0 0 0 3 0 0 0 0 -1 -1 0 0 -1 0",
+        Setting::Projection { volume },
+    );
+    assert_parses(
+        "near 0.5",
+        Setting::Near {
+            distance: U4_28::lit("0.5"),
+        },
+    );
     let factor = U8_28::from_num(1.5);
     assert_parses("zoom 1.5", Setting::Zoom { factor });
     let lens = Some((Axis::Y, Some(degrees(60))));

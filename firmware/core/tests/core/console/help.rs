@@ -37,7 +37,7 @@ fn the_help_lists_every_command_and_how_it_is_used() {
             assert!(Command::parse(name).is_ok(), "{name}");
         }
     }
-    assert_eq!(list.lines().count(), 61);
+    assert_eq!(list.lines().count(), 63);
     for (command, usage) in [
         ("object", "object [ACTION [OBJECT [PLACE]]]\n"),
         ("animate", "animate [off|PART [RATE]]\n"),
@@ -50,6 +50,12 @@ fn the_help_lists_every_command_and_how_it_is_used() {
         ("texture", "texture [own|TEXTURE]\n"),
         ("light", "light [default|LIGHT]\n"),
         ("lookat", "lookat EX EY EZ GX GY GZ [UX UY UZ]\n"),
+        ("fov", "fov X [Y]\n"),
+        ("near", "near DISTANCE\n"),
+        (
+            "projection",
+            "projection perspective|orthographic|matrix NUMBERS\n",
+        ),
         ("shading", "shading [flat|smooth]\n"),
         ("material", "material [MATERIAL]\n"),
     ] {

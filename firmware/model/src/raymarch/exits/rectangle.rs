@@ -61,10 +61,10 @@ pub(super) struct Screen {
     eye: [i32; 3],
     /// The camera's axes u, v and n, s2.23.
     axes: [[i32; 3]; 3],
-    /// Half the width of the picture at distance 1, u7.12.
-    half_width: i32,
-    /// Shift of the picture along u at distance 1, s3.12.
-    shift: i32,
+    /// Numbers of pixels, and their lengths at distance 1, u7.12, across and down.
+    scales: [(u32, i32); 2],
+    /// Middle of the picture along u and v at distance 1, s3.12.
+    centre: [i32; 2],
     /// The part of the picture that is drawn.
     window: Window,
 }
@@ -76,8 +76,9 @@ impl Screen {
         Self {
             eye: view.eye().map(|x| units(x, scale) as i32),
             axes: axes.map(|axis| axis.map(|part| part.to_bits())),
-            half_width: ((view.half_width().to_bits() >> 16) as i32).max(1),
-            shift: view.shift().to_bits() >> 16,
+            scales: (view.lens().scales(window.picture()))
+                .map(|(pixels, length)| (pixels, ((length.to_bits() >> 16) as i32).max(1))),
+            centre: view.lens().middle().map(|x| x.to_bits() >> 16),
             window,
         }
     }
@@ -120,14 +121,14 @@ impl Screen {
                 if dividend < 0 { -slope } else { slope }
             })
         };
-        let [picture, _] = self.window.picture();
-        let range = |slopes: [i32; 2], count: u32, middle: u32| {
+        let range = |axis: usize, side: i32, count: u32, middle: u32| {
+            let (pixels, length) = self.scales[axis];
             let pixel = |slope: i32| {
-                (slope * (picture / 2) as i32).div_euclid(self.half_width) + middle as i32
+                ((slope - self.centre[axis]) * pixels as i32).div_euclid(length) + middle as i32
             };
             // The margin covers the rounding of the slopes and of the camera's axes.
-            let margin = 2 + picture as i32 / self.half_width;
-            let [first, last] = slopes.map(pixel);
+            let margin = 2 + 2 * pixels as i32 / length;
+            let [first, last] = slopes(side).map(pixel);
             let most = count as i32 - 1;
             let (first, last) = (first - margin, last + margin);
             match first > most || last < 0 {
@@ -136,10 +137,10 @@ impl Screen {
             }
         };
         let ([width, height], [column, row]) = (self.window.size.pixels(), self.window.middle());
-        let [first, last] = range(slopes(right).map(|slope| slope - self.shift), width, column);
+        let [first, last] = range(0, right, width, column);
         Rectangle {
             columns: [first / GROUP * GROUP, last | (GROUP - 1)],
-            rows: range(slopes(down), height, row),
+            rows: range(1, down, height, row),
         }
     }
 }
