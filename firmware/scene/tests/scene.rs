@@ -341,6 +341,43 @@ fn a_turning_object_keeps_its_size() {
     near(change("rotate y 0.1", 36_000), 1.5);
 }
 
+/// Steps there and back leave no error: moves are exact sums, and so are scales by powers of two that lose no
+/// bits. Other scales are rounded once a step.
+#[test]
+fn an_object_comes_back_from_many_moves_and_scales() {
+    let start = scene("object add a scale 0.3 rotate x 20 rotate y 40 move 0.1,0.2,0.3");
+    let steps = |texts: [&str; 2], times: usize| {
+        let mut scene = start.clone();
+        for text in texts {
+            for _ in 0..times {
+                execute(&mut scene, &format!("object {text}"), &mut AnyBoard).expect("in range");
+            }
+        }
+        scene.objects[0].place.matrix
+    };
+    let before = start.objects[0].place.matrix;
+    for (texts, times) in [
+        (
+            ["move 1 0.001,-0.002,0.003", "move 1 -0.001,0.002,-0.003"],
+            5_000,
+        ),
+        (["scale 1 4", "scale 1 0.25"], 2),
+        (["scale 1 2,4,1", "scale 1 0.5,0.25,1"], 2),
+    ] {
+        assert_eq!(steps(texts, times), before, "{texts:?}");
+    }
+    let after = steps(["scale 1 1.01", "scale 1 0.9900990099"], 200);
+    let rows = [before, after].map(|matrix| matrix.linear().map(|row| row.map(f64::from)));
+    let pairs = rows[0].as_flattened().iter().zip(rows[1].as_flattened());
+    let worst = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    println!(
+        "off by {:.1} units of 2^-24 after 400 scales",
+        worst * 2f64.powi(24)
+    );
+    // Each step rounds by half a unit, and the factors are rounded to 2^−24 themselves.
+    assert!(worst < 400.0 * 0.5f64.powi(24));
+}
+
 #[test]
 fn other_lines_are_no_scene() {
     let error = |text: &'static str| {
