@@ -21,9 +21,11 @@ const FOLLOWING: u64 = 16;
 
 /// An emulated board.
 pub struct EmulatedBoard {
-    cpu: Cpu,
-    bus: Bus,
+    pub(crate) cpu: Cpu,
+    pub(crate) bus: Bus,
     cycles: u64,
+    /// Whether the last run ended at a breakpoint.
+    pub(crate) is_at_breakpoint: bool,
 }
 
 impl EmulatedBoard {
@@ -48,6 +50,7 @@ impl EmulatedBoard {
             cpu: Cpu::new(),
             bus,
             cycles: 0,
+            is_at_breakpoint: false,
         }
     }
 
@@ -129,11 +132,12 @@ impl EmulatedBoard {
 }
 
 impl Uart for EmulatedBoard {
-    /// Runs for at least `cycles` cycles; the last instruction may end later.
+    /// Runs for at least `cycles` cycles; the last instruction may end later. A breakpoint ends the run earlier.
     fn run(&mut self, cycles: u64) {
         let end = self.cycles.saturating_add(cycles);
         self.bus.devices.update_lines();
-        while self.cycles < end {
+        self.is_at_breakpoint = false;
+        while self.cycles < end && !self.is_at_breakpoint {
             let next = self.bus.devices.advance(self.cycles, &mut self.bus.ram);
             let lines = self.bus.devices.interrupts();
             let limit = next.min(end);
@@ -143,6 +147,7 @@ impl Uart for EmulatedBoard {
                 self.cpu.run(&mut self.bus, self.cycles, limit, lines)
             };
             self.cycles = now;
+            self.is_at_breakpoint = pause == Pause::Breakpoint;
             if pause == Pause::Asleep && now < limit {
                 self.cycles = self.bus.devices.sleep(end, &mut self.bus.ram);
             }

@@ -68,6 +68,18 @@ impl Bus {
         }
     }
 
+    /// Writes bytes from `address` on. Returns whether all of them are in SRAM; otherwise none is written.
+    pub fn write_sram(&mut self, address: u32, bytes: &[u8]) -> bool {
+        let Target::Sram(offset) = place(address) else {
+            return false;
+        };
+        let place = self.sram.get_mut(offset..offset + bytes.len());
+        place.is_some_and(|place| {
+            place.copy_from_slice(bytes);
+            true
+        })
+    }
+
     /// The word at `address`, a multiple of 4, if it is in a memory.
     pub fn memory_word(&self, address: u32) -> Option<u32> {
         let bytes = match place(address) {

@@ -24,6 +24,8 @@ pub struct Cpu {
     retired: u64,
     /// Whether the last instruction was `wfi` and no interrupt has become pending since then.
     asleep: bool,
+    /// Addresses whose instructions are not executed. They are never decoded, so other instructions take no time for a check.
+    pub breakpoints: Vec<u32>,
 }
 
 /// Reason why [`Cpu::run`] returned.
@@ -33,6 +35,8 @@ pub enum Pause {
     Ready,
     /// The CPU sleeps until an interrupt is pending.
     Asleep,
+    /// The next instruction has a breakpoint.
+    Breakpoint,
 }
 
 impl Cpu {
@@ -45,14 +49,37 @@ impl Cpu {
             code: InstructionCache::new(),
             retired: 0,
             asleep: false,
+            breakpoints: Vec::new(),
         }
     }
 
-    /// Resets the CPU; its counters continue.
+    /// Resets the CPU; its counters continue, and breakpoints stay.
     pub fn reset(&mut self) {
-        let retired = self.retired;
-        *self = Self::new();
-        self.retired = retired;
+        *self = Self {
+            retired: self.retired,
+            breakpoints: std::mem::take(&mut self.breakpoints),
+            ..Self::new()
+        };
+    }
+
+    /// The registers x0 to x31.
+    pub fn registers(&self) -> [u32; 32] {
+        std::array::from_fn(|number| self.x[number])
+    }
+
+    /// Sets the registers; x0 stays 0.
+    pub fn set_registers(&mut self, registers: &[u32; 32]) {
+        self.x[1..32].copy_from_slice(&registers[1..]);
+    }
+
+    /// The address of the next instruction.
+    pub fn pc(&self) -> u32 {
+        self.pc
+    }
+
+    /// Sets the address of the next instruction, and wakes the CPU.
+    pub fn set_pc(&mut self, pc: u32) {
+        (self.pc, self.asleep) = (pc, false);
     }
 
     /// Number of executed instructions since the start.
@@ -100,6 +127,10 @@ impl Cpu {
                     pause = Pause::Asleep;
                     break;
                 }
+                Reason::Breakpoint => {
+                    pause = Pause::Breakpoint;
+                    break;
+                }
             }
         }
         self.retired += (at - now - waited) / CYCLES;
@@ -116,6 +147,7 @@ impl Cpu {
             csrs,
             code,
             retired,
+            breakpoints,
             ..
         } = self;
         let retired = *retired;
@@ -215,6 +247,9 @@ impl Cpu {
             use Operation::*;
             match operation {
                 Unknown => {
+                    if breakpoints.contains(&pc) {
+                        end!(Reason::Breakpoint);
+                    }
                     if let Some(word) = bus.memory_word(pc) {
                         *place = Instruction::decode(word);
                         continue;
@@ -359,4 +394,6 @@ enum Reason {
     Control,
     /// The instruction `wfi` was executed.
     Wait,
+    /// The next instruction has a breakpoint.
+    Breakpoint,
 }

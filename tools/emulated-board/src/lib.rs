@@ -18,6 +18,7 @@ mod board;
 mod bus;
 mod cpu;
 mod csr;
+mod debug;
 mod decode;
 mod device;
 mod devices;

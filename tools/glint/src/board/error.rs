@@ -11,6 +11,14 @@ pub enum OpenError {
     /// An error of the emulated board.
     #[error(transparent)]
     Emulated(#[from] emulated_board::Error),
+    /// The address for a debugger cannot be used.
+    #[error("{address}: expected a free address of this host for a debugger, found: {source}")]
+    Debugger {
+        /// The address.
+        address: std::net::SocketAddr,
+        /// Error of the operating system.
+        source: std::io::Error,
+    },
     /// The name is not that of a simulated board, and a serial port of this name cannot be opened.
     #[error(
         "{port}: expected `emulated`, `virtual` or a serial port, found: {source}; this host has {ports}"

@@ -1,5 +1,6 @@
 //! Opens boards: the emulated or the virtual board in this process, or a board on a serial port.
 
+mod debugger;
 mod error;
 mod name;
 mod ports;
@@ -7,6 +8,7 @@ mod route;
 mod serial;
 mod simulated;
 
+pub use debugger::DebuggedBoard;
 pub use emulated_board::EmulatedBoard;
 pub use error::OpenError;
 pub use glint_board_api::{
@@ -17,5 +19,6 @@ pub use ports::{Port, ports};
 pub use route::Route;
 pub use serial::SerialBoard;
 pub use simulated::{
-    SimulatedBoard, built_firmware, emulated, emulated_bios, simulated, verilated, verilated_bios,
+    SimulatedBoard, built_firmware, debugged, emulated, emulated_bios, simulated, verilated,
+    verilated_bios,
 };

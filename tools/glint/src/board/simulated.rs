@@ -1,11 +1,13 @@
 //! Starts boards that are simulated in this process.
 
+use super::debugger::DebuggedBoard;
 use super::error::OpenError;
 use super::name::BoardName;
 use crate::formats::read_at_most;
 use emulated_board::EmulatedBoard;
 use glint_board_api::{AnyBoard, built};
 use std::env;
+use std::net::SocketAddr;
 use std::path::Path;
 use virtual_board::{Start, VirtualBoard};
 
@@ -37,6 +39,19 @@ pub fn verilated_bios() -> Result<SimulatedBoard, OpenError> {
 /// The firmware exceeds main memory.
 pub fn emulated(firmware: &[u8]) -> Result<SimulatedBoard<EmulatedBoard>, OpenError> {
     Ok(SimulatedBoard::new(EmulatedBoard::fast(firmware)?))
+}
+
+/// Builds an emulated board that starts with `firmware` in its memory, for a debugger at `address`; port 0 selects a free port.
+///
+/// # Errors
+/// The firmware exceeds main memory, or the address cannot be used.
+pub fn debugged(
+    firmware: &[u8],
+    address: SocketAddr,
+) -> Result<SimulatedBoard<DebuggedBoard>, OpenError> {
+    let board = DebuggedBoard::new(EmulatedBoard::fast(firmware)?, address);
+    let board = board.map_err(|source| OpenError::Debugger { address, source })?;
+    Ok(SimulatedBoard::new(board))
 }
 
 /// Builds an emulated board that starts with the BIOS of the virtual board.

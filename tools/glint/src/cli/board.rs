@@ -57,6 +57,10 @@ pub struct BoardArguments {
     /// With --web, start the firmware again whenever its file changes, such as after `cargo build`.
     #[arg(long, requires = "web", requires = "firmware")]
     watch: bool,
+    /// Serve GDB at this address: `target remote ADDR` in gdb-multiarch stops the board, for breakpoints, steps, registers and memory.
+    /// Only for the emulated board; port 0 selects a free port [default: 127.0.0.1:3333].
+    #[arg(long, value_name = "ADDR", num_args = 0..=1, default_missing_value = "127.0.0.1:3333", conflicts_with_all = ["bios", "flash"])]
+    gdb: Option<SocketAddr>,
     /// Board: `emulated`, or `virtual` (the verilated SoC), which is slow; with --web also a serial port.
     #[arg(long, default_value = "emulated")]
     board: BoardName,
@@ -67,6 +71,10 @@ pub struct BoardArguments {
 impl BoardArguments {
     pub fn run(self) -> anyhow::Result<()> {
         self.line.check(&self.board)?;
+        if self.gdb.is_some() && self.board != BoardName::Emulated {
+            let found = quote(self.board.to_string().as_bytes());
+            return Err(bad_value("--board with --gdb", "emulated", found).into());
+        }
         if let Some(address) = self.web {
             return self.serve(address);
         }
@@ -95,7 +103,7 @@ impl BoardArguments {
                     BoardName::Virtual => Duration::from_secs(2),
                     _ => Duration::from_millis(250),
                 };
-                let (board, places) = self.line.start(simulated)?;
+                let (board, places) = self.start()?;
                 let clock = SystemClock::start();
                 Box::new(LiveSimulation::new(board, places, period, clock))
             }
@@ -113,6 +121,19 @@ impl BoardArguments {
         Ok(server.run(&mut *board, &self.board.to_string(), watched, &stop)?)
     }
 
+    /// Starts the board with its program, and with `--gdb` for a debugger.
+    fn start(&self) -> anyhow::Result<(AnyBoard, Places)> {
+        let Some(address) = self.gdb else {
+            return self.line.start(&self.board);
+        };
+        self.line.start_by(|image| {
+            let mut board = board::debugged(image, address)?;
+            let address = board.inner().address()?;
+            note(format_args!("GDB: target remote {address}"));
+            Ok(board.into())
+        })
+    }
+
     /// Whether the board starts with the BIOS.
     fn has_bios(&self) -> bool {
         self.bios || self.flash.is_some()
@@ -121,7 +142,7 @@ impl BoardArguments {
     /// Builds the simulated board in its state at power-up.
     fn simulated(&self) -> anyhow::Result<(AnyBoard, Places)> {
         if !self.has_bios() {
-            return self.line.start(&self.board);
+            return self.start();
         }
         let board = board::simulated(&self.board, None)?;
         let mut board = board.context("expected a simulated board")?;

@@ -147,6 +147,17 @@ impl LineArguments {
     /// Starts the simulated board `name`. Its program runs when the board's serial line is read, and need not print a prompt. Returns the
     /// places in the program's sources, too.
     pub fn start(&self, name: &BoardName) -> anyhow::Result<(AnyBoard, Places)> {
+        self.start_by(|image| {
+            let board = board::simulated(name, Some(image))?;
+            board.context("expected a simulated board")
+        })
+    }
+
+    /// Starts a board that `build` makes from the image of its program, like [`start`](Self::start).
+    pub fn start_by(
+        &self,
+        build: impl FnOnce(&[u8]) -> anyhow::Result<AnyBoard>,
+    ) -> anyhow::Result<(AnyBoard, Places)> {
         let (image, places) = match &self.firmware {
             Some(path) => {
                 let Program { image, places } = program::read(path)?;
@@ -154,8 +165,7 @@ impl LineArguments {
             }
             None => (built_firmware(None)?, Places::default()),
         };
-        let board = board::simulated(name, Some(&image))?;
-        let board = board.context("expected a simulated board")?;
+        let board = build(&image)?;
         show_simulation(board.meter());
         Ok((board, places))
     }

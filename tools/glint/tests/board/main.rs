@@ -10,6 +10,7 @@ mod attitudes;
 mod both;
 mod common;
 mod conversations;
+mod debugger;
 mod edges;
 mod fields;
 mod from_flash;
