@@ -90,11 +90,14 @@ impl Lens {
         })
     }
 
-    /// The lens with half width and half height divided by `factor`, rounded down; quotients saturate at 256.
+    /// The lens with half width and half height divided by `factor`, rounded down; a factor of 0 makes them 256. Quotients saturate at 2^31.
     pub(super) fn zoomed(self, factor: U8_28) -> Result<Self, ViewError> {
         let part = |half: U8_28| {
+            if factor == 0 {
+                return U8_28::lit("256");
+            }
             let part = quotient_with_fraction(half.to_bits(), factor.to_bits(), 28);
-            U8_28::from_bits(part.min(256 << 28))
+            U8_28::from_bits(part)
         };
         let half_height = self.half_height.map(part);
         let lens = self.with_half_width(part(self.half_width))?;
