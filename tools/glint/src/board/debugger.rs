@@ -36,6 +36,13 @@ const POLL: u64 = 81_250;
 /// Time between two looks for the next packet while the board is stopped.
 const PAUSE: Duration = Duration::from_millis(1);
 
+/// Longest time that a reply waits for a debugger that does not read; then the connection ends.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// Largest number of steps of a connection in a run of the board, so that a debugger that sends without end does not keep the program from
+/// its other work.
+const STEPS: usize = 1 << 16;
+
 /// The state of a connection to a debugger.
 type Connection = GdbStubStateMachine<'static, Debugged, TcpStream>;
 
@@ -75,16 +82,20 @@ impl DebuggedBoard {
         self.listener.local_addr()
     }
 
-    /// Handles all bytes that a debugger has sent. Returns whether the board runs.
+    /// Handles the bytes that a debugger has sent. Returns whether the board runs.
     fn serve(&mut self) -> bool {
         if self.connection.is_none()
             && let Ok((stream, _)) = self.listener.accept()
+            && stream.set_write_timeout(Some(PATIENCE)).is_ok()
         {
             self.board.steps = false;
             let connection = GdbStub::new(stream).run_state_machine(&mut self.board);
             self.connection = connection.ok();
         }
-        while let Some(connection) = self.connection.take() {
+        for _ in 0..STEPS {
+            let Some(connection) = self.connection.take() else {
+                break;
+            };
             match advance(connection, &mut self.board) {
                 // The debugger has left, or has sent what no debugger sends: the board runs without it.
                 Err(_) | Ok(Advanced::Ended) => {
@@ -95,13 +106,12 @@ impl DebuggedBoard {
                 }
                 Ok(Advanced::Further(connection)) => self.connection = Some(connection),
                 Ok(Advanced::Waits(connection)) => {
-                    let runs = matches!(connection, Connection::Running(_));
                     self.connection = Some(connection);
-                    return runs;
+                    break;
                 }
             }
         }
-        true
+        matches!(self.connection, None | Some(Connection::Running(_)))
     }
 
     /// Tells the debugger why the board has stopped.
