@@ -4,7 +4,7 @@ use glint_board_api::Uart;
 
 use crate::EmulatedBoard;
 
-/// Largest part of a second of the board's time that [`EmulatedBoard::step`] waits for a sleeping CPU.
+/// Maximum time that [`EmulatedBoard::step`] waits for a sleeping CPU, as the divisor of a second of the board's time.
 const LONGEST_SLEEP: u64 = 10;
 
 impl EmulatedBoard {
@@ -30,13 +30,13 @@ impl EmulatedBoard {
         self.cpu.set_pc(pc);
     }
 
-    /// The addresses before whose instructions [`run`](Uart::run) ends, earlier than it would otherwise.
+    /// The breakpoints: [`run`](Uart::run) ends before the instruction at each of these addresses.
     #[must_use]
     pub fn breakpoints(&self) -> &[u32] {
         &self.cpu.breakpoints
     }
 
-    /// Adds a breakpoint, unless it is there.
+    /// Adds a breakpoint, unless one exists at this address.
     pub fn add_breakpoint(&mut self, address: u32) {
         if !self.cpu.breakpoints.contains(&address) {
             self.cpu.breakpoints.push(address);
@@ -44,7 +44,7 @@ impl EmulatedBoard {
         }
     }
 
-    /// Removes a breakpoint. Returns whether it was there.
+    /// Removes a breakpoint. Returns whether one existed at this address.
     pub fn remove_breakpoint(&mut self, address: u32) -> bool {
         let count = self.cpu.breakpoints.len();
         self.cpu.breakpoints.retain(|known| *known != address);
@@ -57,7 +57,7 @@ impl EmulatedBoard {
         self.is_at_breakpoint
     }
 
-    /// Executes the next instruction, even at a breakpoint. A sleeping CPU first sleeps until an interrupt, for at most a tenth of a second.
+    /// Executes the next instruction, even at a breakpoint. A sleeping CPU first waits for an interrupt, for at most a tenth of a second.
     pub fn step(&mut self) {
         let breakpoints = std::mem::take(&mut self.cpu.breakpoints);
         let executed = self.instructions();
@@ -128,7 +128,7 @@ mod tests {
                 (board.pc(), board.registers()[5]),
                 (second, counted + round)
             );
-            // Without a step the board stays there.
+            // Without a step the board stays at the breakpoint.
             board.run(1000);
             assert_eq!(board.pc(), second);
             board.step();
@@ -163,7 +163,7 @@ mod tests {
         assert!(board.poke(SRAM.base + 1, &[1, 2]));
         assert_eq!(board.peek(SRAM.base, &mut bytes[..3]), 3);
         assert_eq!(bytes[..3], [0, 1, 2]);
-        // Reading ends at the end of a memory; memories that the CPU cannot write stay.
+        // Reading ends at the end of a memory; memories that the CPU cannot write stay unchanged.
         assert_eq!(board.peek(MAIN_RAM.base + MAIN_RAM.size - 2, &mut bytes), 2);
         assert_eq!(board.peek(0xf000_0000, &mut bytes), 0);
         assert_eq!(board.peek(u32::MAX, &mut bytes), 0);

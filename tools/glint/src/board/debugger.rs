@@ -1,7 +1,7 @@
 //! An emulated board under the control of GDB, by GDB's remote serial protocol over TCP.
 //!
-//! The board runs until a debugger connects, which stops it. It goes on when the debugger continues, detaches or ends; a stopped board has
-//! no time. One debugger at a time is served.
+//! A debugger that connects stops the board. The board runs again when the debugger sends `continue`, detaches or ends. The time of a
+//! stopped board does not advance. One debugger at a time can be connected.
 
 use std::convert::Infallible;
 use std::io;
@@ -30,17 +30,17 @@ use virtual_board::virtual_flash::Flash;
 use virtual_board::virtual_image_sensor::ImageSensor;
 use virtual_board::virtual_mpu6050::Wires;
 
-/// Number of the board's cycles between two looks for a debugger, or for a break (Ctrl-C) of one: a millisecond at 81.25 MHz.
+/// Number of the board's cycles between two polls for a new debugger, or for Ctrl-C from a connected debugger: 1 ms at 81.25 MHz.
 const POLL: u64 = 81_250;
 
-/// Time between two looks for the next packet while the board is stopped.
+/// Time between two polls for the next packet while the board is stopped.
 const PAUSE: Duration = Duration::from_millis(1);
 
-/// Longest time that a reply waits for a debugger that does not read; then the connection ends.
+/// Time-out of writing a reply, for a debugger that does not read; after this time the connection is closed.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// Largest number of steps of a connection in a run of the board, so that a debugger that sends without end does not keep the program from
-/// its other work.
+/// Maximum number of bytes to handle in one call of [`Uart::run`], so that a debugger that sends without end does not block this
+/// program.
 const STEPS: usize = 1 << 16;
 
 /// The state of a connection to a debugger.
@@ -51,7 +51,7 @@ pub struct DebuggedBoard {
     board: Debugged,
     listener: TcpListener,
     connection: Option<Connection>,
-    /// The board's time of the next look for a debugger while it runs.
+    /// The board's cycle of the next poll for a debugger while the board runs.
     next_poll: u64,
 }
 
@@ -77,7 +77,7 @@ impl DebuggedBoard {
     /// The address at which a debugger connects.
     ///
     /// # Errors
-    /// The system does not tell it.
+    /// The system does not report the address.
     pub fn address(&self) -> io::Result<SocketAddr> {
         self.listener.local_addr()
     }
@@ -97,7 +97,7 @@ impl DebuggedBoard {
                 break;
             };
             match advance(connection, &mut self.board) {
-                // The debugger has left, or has sent what no debugger sends: the board runs without it.
+                // The debugger has disconnected, or has violated the protocol: the board runs without it.
                 Err(_) | Ok(Advanced::Ended) => {
                     let board = &mut self.board.board;
                     for address in board.breakpoints().to_vec() {
@@ -114,35 +114,35 @@ impl DebuggedBoard {
         matches!(self.connection, None | Some(Connection::Running(_)))
     }
 
-    /// Tells the debugger why the board has stopped.
+    /// Reports to the debugger why the board has stopped.
     fn report(&mut self, reason: SingleThreadStopReason<u32>) {
         self.connection = match self.connection.take() {
             Some(Connection::Running(running)) => running.report_stop(&mut self.board, reason).ok(),
             other => other,
         };
-        // The answer of the debugger decides how the board goes on.
+        // The debugger's answer decides whether the board runs or steps, so the next run polls at once.
         self.next_poll = self.cycles();
     }
 }
 
-/// A connection after a step of it.
+/// A connection after [`advance`].
 enum Advanced {
-    /// Further bytes may be waiting.
+    /// More bytes may have arrived.
     Further(Connection),
-    /// No byte is waiting.
+    /// No byte has arrived.
     Waits(Connection),
     /// The debugger has detached.
     Ended,
 }
 
-/// Handles a byte of the debugger, if one is waiting.
+/// Handles one byte from the debugger, if any has arrived.
 fn advance(
     connection: Connection,
     board: &mut Debugged,
 ) -> Result<Advanced, GdbStubError<Infallible, io::Error>> {
     /// The next byte in `stream`, if any.
     fn byte(stream: &mut TcpStream) -> io::Result<Option<u8>> {
-        // At the end of the stream there is something to see, and nothing to read: an error.
+        // At the end of the stream, `peek` returns a byte, and `read` then fails.
         match ConnectionExt::peek(stream)? {
             Some(_) => ConnectionExt::read(stream).map(Some),
             None => Ok(None),
@@ -168,7 +168,7 @@ fn advance(
 }
 
 impl Uart for DebuggedBoard {
-    /// Runs the board, or, while a debugger has stopped it, waits for a millisecond at most.
+    /// Runs the board. While a debugger has stopped the board, waits for at most a millisecond instead.
     fn run(&mut self, cycles: u64) {
         let is_stopped = matches!(self.connection, Some(Connection::Idle(_)));
         if is_stopped || self.cycles() >= self.next_poll {

@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use std::thread::sleep;
 use std::time::{Duration, SystemTime};
 
-/// Time between two looks at the file.
+/// Interval between two polls of the file.
 const PERIOD: Duration = Duration::from_millis(250);
 
-/// Time of the last change and length of a file; `None` while it does not exist.
+/// Modification time and length of a file; `None` while the file does not exist.
 type Stamp = Option<(SystemTime, u64)>;
 
 fn stamp(path: &Path) -> Stamp {
@@ -26,15 +26,15 @@ pub struct Watched {
 }
 
 impl Watched {
-    /// The file at `path`, as it is now. Call this before the program is read.
+    /// Watches the file at `path` for changes from now on. Call this before the program is read, so that no change is missed.
     #[must_use]
     pub fn new(path: PathBuf) -> Self {
         let known = stamp(&path);
         Self { path, known }
     }
 
-    /// Looks at the file for ever. After a change, when two looks have found the same file, the board gets the new program, or the pages
-    /// the reason why the file is no program.
+    /// Polls the file in an endless loop. After a change, and when two polls in a row have found the same stamp, starts the new program on
+    /// the board, or sends the pages the reason why the file is not a program.
     pub(super) fn watch(mut self, channels: &Channels) {
         let mut last = self.known;
         loop {

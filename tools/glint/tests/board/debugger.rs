@@ -1,4 +1,4 @@
-//! A debugger of the emulated board, in the packets of GDB's remote serial protocol.
+//! Tests the control of the emulated board by a debugger, with packets of GDB's remote serial protocol.
 
 use glint::board::{DebuggedBoard, SimulatedBoard, Uart, debugged};
 use litex_pac::memories::MAIN_RAM;
@@ -8,7 +8,7 @@ use std::net::{Shutdown, SocketAddr, TcpStream};
 /// `addi t0, t0, 1; jal zero, -4`.
 const LOOP: [u32; 2] = [0x0012_8293, 0xffdf_f06f];
 
-/// Largest number of runs of the board until a reply: a stopped board waits for a millisecond in each.
+/// Maximum number of calls of `run` until a reply. On a stopped board, each call waits for a millisecond.
 const PATIENCE: u32 = 10_000;
 
 struct Debugger {
@@ -17,12 +17,15 @@ struct Debugger {
 }
 
 impl Debugger {
-    /// A debugger that has stopped the board with the program [`LOOP`].
+    /// Connects a debugger to a board that runs the program [`LOOP`], which stops the board.
     fn new() -> Self {
         let any: SocketAddr = "127.0.0.1:0".parse().unwrap();
         let mut board = debugged(LOOP.map(u32::to_le_bytes).as_flattened(), any).unwrap();
         board.run(10_000);
-        assert!(board.cycles() >= 10_000, "it runs without a debugger");
+        assert!(
+            board.cycles() >= 10_000,
+            "the board runs without a debugger"
+        );
         let stream = connect(&mut board);
         Self { board, stream }
     }
@@ -32,7 +35,7 @@ impl Debugger {
         write!(self.stream, "${packet}#{sum:02x}").unwrap();
     }
 
-    /// The next packet from the board, which runs meanwhile.
+    /// Runs the board until it sends a packet, and returns the packet.
     fn reply(&mut self) -> String {
         let mut text = Vec::new();
         for _ in 0..PATIENCE {
@@ -67,7 +70,7 @@ impl Debugger {
         u32::from_str_radix(digits, 16).unwrap().swap_bytes()
     }
 
-    /// Runs the board. Returns the number of cycles that it takes.
+    /// Calls `run` 200 times. Returns by how many cycles the board has advanced: 0 while a debugger has stopped it.
     fn run(&mut self) -> u64 {
         let before = self.board.cycles();
         for _ in 0..200 {
@@ -77,7 +80,8 @@ impl Debugger {
     }
 }
 
-/// A packet with its repetitions written out: after `*` follows the number of further times of the last character, plus 29.
+/// Expands the run-length encoding of a packet: `*` and a character, whose code is 29 plus the number of repetitions of the character
+/// before `*`.
 fn expanded(packet: &str) -> String {
     let mut text = String::new();
     let mut rest = packet.chars();
@@ -104,7 +108,11 @@ fn connect(board: &mut SimulatedBoard<DebuggedBoard>) -> TcpStream {
 fn breakpoints_steps_and_ctrl_c_stop_the_board() {
     let mut debugger = Debugger::new();
     assert!(debugger.ask("?").contains("05"), "stopped by a trap");
-    assert_eq!(debugger.run(), 0, "a stopped board has no time");
+    assert_eq!(
+        debugger.run(),
+        0,
+        "the time of a stopped board does not advance"
+    );
 
     let second = MAIN_RAM.base + 4;
     assert_eq!(debugger.ask(&format!("Z0,{second:x},4")), "OK");
@@ -139,7 +147,7 @@ fn memory_is_read_and_written() {
         debugger.ask("s");
     }
     assert_eq!(debugger.register(5), counted + 2);
-    // A register of a device is not read, and nothing beyond the memories.
+    // Registers of devices and addresses beyond the memories cannot be read.
     for address in ["f0000000", "0fffffff"] {
         assert!(debugger.ask(&format!("m{address},4")).starts_with('E'));
     }
@@ -151,7 +159,7 @@ fn the_board_goes_on_when_its_debugger_leaves() {
     assert_eq!(debugger.ask("D"), "OK");
     assert!(debugger.run() > 100_000);
 
-    // Another one may connect; its breakpoints end with its connection.
+    // Another debugger can connect. Its breakpoints are removed when its connection ends.
     debugger.stream = connect(&mut debugger.board);
     assert!(debugger.ask("?").contains("05"));
     let second = MAIN_RAM.base + 4;
@@ -159,7 +167,7 @@ fn the_board_goes_on_when_its_debugger_leaves() {
     debugger.stream.shutdown(Shutdown::Both).unwrap();
     assert!(debugger.run() > 100_000);
 
-    // Bytes of another protocol do no harm.
+    // After bytes that violate the protocol, the board runs again.
     debugger.stream = connect(&mut debugger.board);
     let bytes = b"GET / HTTP/1.1\r\n\r\n$$##+-\xff}$g#00$Z9,zz#00\x03";
     debugger.stream.write_all(bytes).unwrap();
