@@ -14,14 +14,14 @@ const MEMORY: usize = 128 << 20;
 pub struct Program {
     /// The memory image.
     pub image: Vec<u8>,
-    /// The places in its sources, for an ELF file.
+    /// The source locations of its code; none for a flat binary.
     pub places: Places,
 }
 
 /// Reads the file at `path`, or standard input: a flat binary, which is checked, or an ELF file, which is converted.
 ///
 /// # Errors
-/// The file cannot be read, [`check`] rejects it, or the ELF file is no program for a board of Glint.
+/// The file cannot be read, [`check`] rejects it, or the ELF file is not a program for Glint's boards.
 pub fn read(path: &Path) -> Result<Program, InputError> {
     let file = read_up_to(path, MEMORY)?;
     if file.starts_with(&image::MAGIC) {

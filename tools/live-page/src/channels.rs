@@ -42,7 +42,7 @@ pub struct Program {
     pub name: String,
     /// Its memory image.
     pub image: Vec<u8>,
-    /// The places in its sources.
+    /// The source locations of its code.
     pub places: Places,
 }
 
@@ -74,7 +74,7 @@ impl Request {
 
 /// The channel for messages between the pages and the board.
 pub struct Channels {
-    /// The viewers.
+    /// The viewers and their message queues.
     pub hub: Hub,
     /// The levels of buttons and switches, which the viewer with control sets.
     pub inputs: Inputs,

@@ -43,7 +43,8 @@ pub trait Live: Board {
         Err(BoardError::simulation(error))
     }
 
-    /// Takes output of the program. Returns the place in its sources when it has ended with a message about an address.
+    /// Processes output of the program. After the last message of a program that has ended, returns the source location of the address in
+    /// the message.
     fn hear(&mut self, _output: &[u8]) -> Option<String> {
         None
     }
@@ -74,9 +75,8 @@ pub struct LiveSimulation<S: ?Sized, C> {
 }
 
 impl<S: Simulation + ?Sized, C: Clock> LiveSimulation<S, C> {
-    /// Wraps a board whose firmware, with these places in its sources, is running, and connects a motion sensor and a camera to it.
-    /// `clock` limits the board to real time. `sample_period` is the interval of the measurements
-    /// on its console.
+    /// Wraps a board whose firmware is running, and connects a motion sensor and a camera to it. `places` are the source locations of the
+    /// firmware. `clock` limits the board to real time. `sample_period` is the interval of the measurements on the console.
     pub fn new(
         mut board: SimulatedBoard<S>,
         places: Places,

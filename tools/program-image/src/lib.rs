@@ -1,4 +1,4 @@
-//! Programs for the soft core: their memory images, and places in their sources, from ELF files.
+//! Memory images and source locations of programs for the soft core, from their ELF files.
 #![forbid(unsafe_code)]
 
 mod place;
@@ -23,7 +23,7 @@ const START: usize = 256;
 /// Symbol of the build id in a program.
 const BUILD_ID_SYMBOL: &str = "GLINT_BUILD_ID";
 
-/// Reason why an ELF file is no program for a board. The texts state what was found.
+/// Reason why an ELF file is not a program for a board. Each text follows "found" in an error.
 #[derive(Debug, thiserror::Error)]
 pub enum ImageError {
     /// The file is damaged, or is not for a 32-bit processor.
@@ -42,10 +42,10 @@ pub enum ImageError {
         /// Build id in the program.
         found: u32,
     },
-    /// The program does not begin where the BIOS jumps to.
+    /// The entry point is not the address to which the BIOS jumps.
     #[error("the entry point {found:#010x}, while the BIOS jumps to {base:#010x}", base = MAIN_RAM.base)]
     Entry {
-        /// The entry point.
+        /// The entry point of the program.
         found: u64,
     },
     /// Main memory is smaller than the memory map.
@@ -80,21 +80,21 @@ const OPCODES: [u8; 11] = [
     0x03, 0x0f, 0x13, 0x17, 0x23, 0x33, 0x37, 0x63, 0x67, 0x6f, 0x73,
 ];
 
-/// Whether a file begins as a flat binary does: with an RV32IM instruction that is not text.
+/// Whether the first bytes of a file can be an RV32IM instruction, as in a flat binary. The first bytes of a text can be one, too.
 #[must_use]
 pub fn is_flat(file: &[u8]) -> bool {
     file.first_chunk::<INSTRUCTION>()
         .is_some_and(|first| OPCODES.contains(&(first[0] & 0x7f)))
 }
 
-/// Whether a file begins as a text does.
+/// Whether the first bytes of a file are text.
 #[must_use]
 pub fn is_text(file: &[u8]) -> bool {
     let is_text = |byte: &u8| byte.is_ascii_graphic() || byte.is_ascii_whitespace();
     file.iter().take(START).all(is_text)
 }
 
-/// Whether a file can be a program: an ELF file, or one that begins as a flat binary does and whose name ends in `.bin` or has no
+/// Whether a file can be a program: an ELF file, or a file that begins like a flat binary and whose name ends in `.bin` or has no
 /// extension. The first bytes of a mesh can be an instruction, too, such as the `glTF` of a GLB file or the header of an STL file.
 #[must_use]
 pub fn may_be_program(name: &str, file: &[u8]) -> bool {
@@ -146,7 +146,7 @@ pub fn of_elf(elf: &[u8], main_ram: u64) -> Result<Vec<u8>, ImageError> {
         return Err(ImageError::Fast { found: fast, sram });
     }
 
-    // The symbols are the file's, so only main memory bounds the image.
+    // A symbol of a damaged file can have any value, so the end of main memory also limits the size of the image.
     let program_end = symbol("_sample_memory")?.min(end);
     let mut image = Vec::new();
     for segment in file.elf_program_headers() {

@@ -1,33 +1,33 @@
-//! Places in the sources of a program, for the addresses that it prints when it ends with an error.
+//! Source locations of the addresses that a program prints when it ends with an error.
 
 use addr2line::gimli::{self, Dwarf, EndianSlice, LittleEndian, Reader, SectionId};
 use addr2line::{Context, Frame, demangle_auto};
 use object::read::elf::{ElfFile32, ElfSymbol32};
 use object::{Endianness, Object, ObjectSection, ObjectSymbol};
 
-/// Text before the address of code in a message.
+/// Text before a code address in a message.
 const BEFORE: &str = " at 0x";
-/// Text of the line after the message with which a program ends.
+/// Text of the line that follows the last message of a program.
 const AFTER: &str = "halted, press Enter to restart";
-/// Longest part of a line that is kept.
+/// Maximum number of bytes of a line that are kept.
 const LINE: usize = 1024;
-/// Parts of the paths of the standard library's sources, whether they are installed or not.
+/// Parts of the paths of the standard library's sources: without and with installed sources.
 const STANDARD_LIBRARY: [&str; 2] = ["/rustc/", "/rustlib/src/rust/"];
 
-/// Finds the place in the sources when a program ends with a message about an address, such as
-/// `trap: illegal instruction (mcause 2) at 0x40000680, …`.
+/// Searches the output of a program for its last message, such as `trap: illegal instruction (mcause 2) at 0x40000680, …`, and finds the
+/// source location of the address.
 #[derive(Debug, Default)]
 pub struct Places {
     /// The file of the program.
     file: Vec<u8>,
     /// The unfinished line of the output.
     line: Vec<u8>,
-    /// The address in the line before.
+    /// The address in the previous line.
     address: Option<u32>,
 }
 
 impl Places {
-    /// The places of a program, an ELF file. A flat binary has none.
+    /// The source locations of a program in an ELF file. A flat binary has none.
     #[must_use]
     pub fn new(file: Vec<u8>) -> Self {
         Self {
@@ -36,7 +36,7 @@ impl Places {
         }
     }
 
-    /// Takes output of the program. Returns a text with the address and its place at the end of a message.
+    /// Processes output of the program. Returns a text with the address and its source location if the program has ended with a message.
     pub fn hear(&mut self, output: &[u8]) -> Option<String> {
         let mut found = None;
         for &byte in output {
@@ -60,20 +60,20 @@ impl Places {
     }
 }
 
-/// The address of code in a line.
+/// The code address in a line.
 fn address(line: &str) -> Option<u32> {
     let (_, after) = line.split_once(BEFORE)?;
     u32::from_str_radix(after.get(..8)?, 16).ok()
 }
 
-/// The function of an address in the code of an ELF file, with file and line: `recurse, src/main.rs:25`. A place in the standard library is
-/// replaced by that of its caller, as far as the call is inlined. Without information for debuggers, the function alone.
+/// The source location of a code address: function, file and line, such as `recurse, src/main.rs:25`. If the location is in the standard
+/// library and its code is inlined, the location of the caller. Without debug information, only the function.
 fn place(elf: &[u8], address: u32) -> Option<String> {
     let file = ElfFile32::<Endianness>::parse(elf).ok()?;
     line(&file, address).or_else(|| function(&file, address))
 }
 
-/// The place of an address by the information for debuggers.
+/// The source location of an address, from the debug information.
 fn line(file: &ElfFile32, address: u32) -> Option<String> {
     let section = |id: SectionId| {
         let found = file.section_by_name(id.name());
@@ -91,7 +91,7 @@ fn line(file: &ElfFile32, address: u32) -> Option<String> {
     None
 }
 
-/// The function of an address by the table of symbols.
+/// The function of an address, from the symbol table.
 fn function(file: &ElfFile32, address: u32) -> Option<String> {
     let address = u64::from(address);
     let is_there = |symbol: &ElfSymbol32| {
@@ -102,7 +102,7 @@ fn function(file: &ElfFile32, address: u32) -> Option<String> {
     Some(demangle_auto(symbol.name().ok()?.into(), None).into_owned())
 }
 
-/// The text of a place outside of the standard library.
+/// The text of a source location; `None` for a location in the standard library.
 fn text<R: Reader>(frame: &Frame<R>) -> Option<String> {
     let (function, location) = (frame.function.as_ref()?, frame.location.as_ref()?);
     let (file, line) = (location.file?, location.line?);
