@@ -2,7 +2,8 @@
 //! LOW HIGH COMMAND…`.
 //!
 //! The stack begins at the address HIGH and grows down, at most to LOW. Memory is 0 at the start of the board, so the lowest byte
-//! that is not 0 shows how far the stack has grown. A motion sensor at rest and an image sensor without a hand are plugged in.
+//! that is not 0 shows how far the stack has grown. A motion sensor at rest and an image sensor with no hand in view are
+//! connected.
 
 use emulated_board::EmulatedBoard;
 use emulated_board::{Simulation, Uart};

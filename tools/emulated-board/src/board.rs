@@ -14,8 +14,8 @@ use crate::cpu::{Cpu, Difference, Executed, Pause};
 use crate::devices::Devices;
 use crate::error::Error;
 
-/// Factor by which the devices' time runs faster than the time of the followed board. With this
-/// factor, an engine ends before the program starts it again, even if the estimate of its time is
+/// In lockstep with another board, factor by which the devices' time runs faster than the time of
+/// the other board. With this factor, an engine ends before the program starts it again, even if the estimate of its time is
 /// too long.
 const FOLLOWING: u64 = 16;
 
@@ -89,12 +89,13 @@ impl EmulatedBoard {
         self.bus.devices.identity.blocks = blocks;
     }
 
-    /// Sets whether the triangle engine draws textures. The firmware reads it at its start.
+    /// Sets whether the triangle engine draws textures. The firmware reads this setting when the firmware starts.
     pub fn state_textures(&mut self, is_textured: bool) {
         self.bus.devices.triangle.set_textures(is_textured);
     }
 
-    /// Sets the best shading of the triangle engine, to emulate a gateware without smooth shading. The firmware reads it at its start.
+    /// Sets the best shading of the triangle engine, to emulate a gateware without smooth shading. The firmware reads this setting when the
+    /// firmware starts.
     pub fn state_shading(&mut self, capability: Shading) {
         self.bus.devices.triangle.set_shading(capability);
     }
@@ -105,7 +106,7 @@ impl EmulatedBoard {
     }
 
     /// Runs to the next vertical blanking, and returns the frame that is shown from that time on. While scan-out is disabled, this frame is
-    /// black and has the last size.
+    /// black and keeps the size of the last frame.
     pub fn capture(&mut self) -> Frame {
         let blanking = self.bus.devices.scanout.next_blanking();
         self.run(blanking + 1 - self.cycles);

@@ -13,7 +13,7 @@ pub enum Error {
     Address {
         /// Address of the first byte, as the CPU sees it.
         address: u32,
-        /// Number of bytes.
+        /// Number of bytes of the access.
         length: usize,
     },
     /// The frame on the monitor has an unexpected width.

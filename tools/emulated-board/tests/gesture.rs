@@ -54,7 +54,7 @@ fn settings() -> Settings {
     }
 }
 
-/// Expected sums of a frame of the scene at a time.
+/// Expected sums of the frame that the scene has at `time`.
 fn sums(time: f64) -> Sums {
     let settings = settings();
     let mut sums = Sums::NONE;
@@ -205,7 +205,7 @@ fn faults_are_those_of_the_frames() {
         bench.engine.sensor().unwrap().fault = Some(fault);
         while bench.run(2 * FRAME) {}
         assert!(bench.read(offset::FRAMES_DROPPED) > dropped, "{fault:?}");
-        // The clock stops in some of these frames, and ticks in the others.
+        // The clock stops in some of these frames, and runs in the other frames.
         while matches!(fault, SensorFault::Stopped(_)) && bench.status().running() {
             bench.run(500);
         }

@@ -94,7 +94,7 @@ fn frames_are_captured_while_accesses_wait_for_the_bus() {
 fn each_page_of_the_flash_runs_its_own_code() {
     let mut board = started(&[lui(A2, RESULTS), lui(A0, FLASH.base), jump(A0)]);
     for value in [1, 2] {
-        // Jumps back in each round, because the first page continues in the second page.
+        // An endless loop from the first page to the second page and back, so that the new code runs after the flash is replaced.
         let mut words = [lui(A0, FLASH.base + PAGE), jump(A0)].to_vec();
         words.resize(PAGE as usize / 4, 0);
         words.extend([

@@ -36,7 +36,7 @@ pub enum Difference {
     Value {
         /// Address of the instruction.
         pc: u32,
-        /// The instruction.
+        /// The instruction word.
         word: u32,
         /// Number of the register.
         register: u32,

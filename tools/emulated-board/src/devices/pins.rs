@@ -6,7 +6,6 @@ use crate::{Device, Events, MainMemory};
 
 /// Pins that the CPU reads. Each button has an event. The switches have no events, so `in` is their last register.
 pub struct Inputs {
-    /// Levels of the pins.
     levels: u32,
     mask: u32,
     has_events: bool,

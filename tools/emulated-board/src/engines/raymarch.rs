@@ -25,7 +25,6 @@ use spheres::Spheres;
 /// per cycle.
 const LANES: u64 = 2;
 
-/// Number of counters.
 const COUNTERS: usize = ((offset::UNDECIDED - offset::CYCLES_BUSY) / 4 + 1) as usize;
 
 /// Largest depth of a sponge.

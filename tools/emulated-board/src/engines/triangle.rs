@@ -30,7 +30,6 @@ use raster::RasterUnit;
 use region::COUNT_BITS;
 use time::Work;
 
-/// Number of counters.
 const COUNTERS: usize = ((offset::CYCLES_FLUSH - offset::CYCLES_BUSY) / 4 + 1) as usize;
 
 /// State of one kind of pass, geometry or raster.

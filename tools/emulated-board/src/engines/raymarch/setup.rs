@@ -121,7 +121,7 @@ fn leaving(
     }
 }
 
-/// The prism around the eye whose registers begin at `first`.
+/// The prism around an eye; the registers of the eye begin at `first`.
 fn start(parameters: &Parameters, solid: &exits::Solid, first: u32, exit: Option<Exit>) -> Start {
     const START: u32 = offset::START_LEFT_X - offset::ORIGIN_LEFT_X;
     const MIRRORED: u32 = offset::START_LEFT_MIRRORED_X - offset::START_LEFT_X;
@@ -194,7 +194,7 @@ fn solid(parameters: &Parameters, register: SolidRegister) -> Solid {
     }
 }
 
-/// The spheres.
+/// The constants of the spheres of a frame.
 fn round(register: SolidRegister, spheres: &Spheres) -> FixedSpheres {
     let count = usize::from(register.last_sphere()) + 1;
     FixedSpheres {

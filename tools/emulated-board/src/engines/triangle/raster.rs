@@ -318,7 +318,7 @@ impl Averages {
                 rounding,
             };
         }
-        // The smallest picture of samples stands for half of its width and height, which is no size of a picture.
+        // Not all sizes of samples have a picture size of half their width and height.
         let half = Size::ALL
             .into_iter()
             .find(|size| size.doubled() == Some(samples));
@@ -442,7 +442,7 @@ impl Drawing<'_> {
                     None => 0,
                 };
                 if fog.is_some() {
-                    // One cycle for each half of a group; about half of the groups have only one.
+                    // One cycle for each half of a group; about half of the groups have only one half with pixels.
                     colours = colours.max(groups + groups / 2);
                 }
                 [coverage.covered, coverage.drawn]
@@ -476,7 +476,7 @@ impl Drawing<'_> {
         self.counts.drawn += u64::from(field.pixels);
     }
 
-    /// Draws the sky: with `is_first` in each band before its triangles, one group in a cycle, otherwise during the flush.
+    /// Draws the sky. With `is_first`, the sky comes before the triangles of each band, one group per cycle; otherwise during the flush.
     fn draw_sky(&mut self, sky: &Sky, samples: Samples, is_first: bool) {
         // The buffer has the size of the picture.
         let _ = sky.fill(samples, &mut self.target, &mut || {});
@@ -486,8 +486,8 @@ impl Drawing<'_> {
         }
     }
 
-    /// Extends all lines to their whole width, which a field or the sky covers. Their flush does not take longer than the rays of a band, so
-    /// this comes after the estimates of all bands.
+    /// Extends all lines to the whole width, because a field or the sky covers them. This happens after the estimates of
+    /// all bands, because flushing whole lines takes no longer than the rays of a band.
     fn cover(&mut self) {
         let last = self.size.width() as i32 / GROUP - 1;
         let lines = self.extents.iter_mut().take(self.size.height() as usize);

@@ -40,7 +40,7 @@ impl Regions {
     }
 
     /// # Errors
-    /// [`Error::Address`] if a region was misplaced.
+    /// [`Error::Address`] if a region was not aligned, or not within main memory.
     pub const fn result(&self) -> Result<(), Error> {
         if self.is_misplaced {
             Err(Error::Address)

@@ -30,9 +30,9 @@ pub struct Walk {
 pub struct Chunk {
     /// Number in the mesh of the first vertex.
     pub first: u32,
-    /// The first vertex.
+    /// Index of the memory word with the first vertex.
     pub vertices: u32,
-    /// The triangles.
+    /// Indices of the memory words with the triangles.
     pub triangles: Range<u32>,
 }
 
