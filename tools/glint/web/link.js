@@ -21,8 +21,8 @@ export function startLink({ opened, received, closed }) {
       const wasOpen = isOpen;
       isOpen = false;
       closed(wasOpen
-        ? `The board's program has closed the connection${reason ? `: ${reason}` : ""}. Trying again.`
-        : "The board's program does not answer. If it was started again, open the address that it prints now. Trying again.");
+        ? `The server of this page has closed the connection${reason ? `: ${reason}` : ""}. Trying again.`
+        : "The server of this page does not answer. If `glint board` was restarted, open the address that it prints. Trying again.");
       setTimeout(connect, RETRY_MS);
     });
   }

@@ -12,7 +12,7 @@ const MAX_NAMED: usize = 4;
 pub struct Beside {
     /// Path of the mesh.
     mesh: PathBuf,
-    /// The files with their paths, which start at the same folder as the path of the mesh.
+    /// The files with their paths, relative to the same folder as the path of the mesh.
     files: Vec<(PathBuf, Vec<u8>)>,
     /// The requested names, and whether a file was found for each.
     asked: Vec<(String, bool)>,

@@ -24,7 +24,7 @@ pub enum List {
     Fields,
 }
 
-/// A choice.
+/// A choice: a scene, a mesh or a field, with the commands that show it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Choice {
     /// Name on the page's button.
@@ -46,7 +46,7 @@ impl Choice {
     }
 }
 
-/// All choices.
+/// All choices that a firmware offers.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Choices {
     scenes: Vec<Choice>,
@@ -156,7 +156,7 @@ fn mesh_names(models: &[String]) -> Vec<&str> {
     names
 }
 
-/// The names of textures in a reply to `models`, each once: an uploaded texture may be a copy of one of the flash.
+/// The names of textures in a reply to `models`, without duplicates: an uploaded texture may be a copy of a texture in the flash.
 fn texture_names(models: &[String]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for line in models {

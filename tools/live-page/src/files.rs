@@ -15,7 +15,7 @@ pub struct File {
     pub name: &'static str,
     /// Media type.
     pub media: &'static str,
-    /// Content.
+    /// Bytes of the file.
     pub content: &'static str,
 }
 

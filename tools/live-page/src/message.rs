@@ -36,7 +36,7 @@ impl Message {
 /// A console command with its purpose.
 #[derive(Clone, Debug, Serialize)]
 pub struct Entry {
-    /// The command.
+    /// Name of the command.
     pub name: String,
     /// Text that the command `help` prints for the command.
     pub text: String,
@@ -108,14 +108,14 @@ pub enum ToPage {
     },
     /// Reply to `help COMMAND`.
     Help {
-        /// The command.
+        /// Name of the described command.
         command: String,
         /// Lines of the reply.
         lines: Vec<String>,
     },
     /// Words that complete a line.
     Completions {
-        /// The line.
+        /// The line to complete.
         line: String,
         /// The words that can replace its last word.
         words: Vec<String>,
@@ -129,7 +129,7 @@ pub enum ToPage {
     },
     /// A notice for the user.
     Notice {
-        /// The text.
+        /// Text of the notice, one line.
         text: String,
         /// Whether the notice is an error.
         is_error: bool,
@@ -186,9 +186,9 @@ pub enum FromPage {
     },
     /// Shows a scene, a mesh or a field from the lists.
     Choose {
-        /// The list.
+        /// The list that contains the choice.
         list: List,
-        /// The name in the list.
+        /// Name of the choice.
         name: String,
     },
     /// Cancels the running command.

@@ -27,8 +27,8 @@ const POLL_MS: u64 = 2;
 /// The key Ctrl-C, which cancels the running command.
 const INTERRUPT: &[u8] = b"\x03";
 
-/// Time in ms of a simulated board's time in which a firmware that has just started prints its prompt. The program may be one without a
-/// prompt. A board on a serial port has already answered.
+/// Time-out of the first prompt of a program on a simulated board, in ms of the board's time. After this time the program counts as one
+/// without a prompt.
 const FIRST_PATIENCE_MS: u64 = 1_000;
 
 /// Note on a program without a prompt.
@@ -189,8 +189,8 @@ impl<'a> Session<'a> {
         Ok(session)
     }
 
-    /// Begins to find out whether the running program has a prompt. A simulated board has just started; nothing is sent to its program,
-    /// which may be one without a prompt. `started` is the text for the pages, empty for the first program.
+    /// Starts to detect whether the running program has a prompt. On a simulated board, which has just started, the session only waits: it
+    /// sends nothing, because the program may have no prompt. `started` is the text for the pages, empty for the first program.
     fn meet(&mut self, started: String) -> Result<(), BoardError> {
         self.has_prompt = false;
         if self.board.memory().is_some() {
@@ -205,7 +205,7 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// Ends the wait for the first prompt, if it has come or is overdue.
+    /// Ends the wait for the first prompt, if the prompt has arrived or the wait has timed out.
     fn end_meeting(&mut self) -> Result<(), BoardError> {
         let now = self.board.now_ms();
         let Some(meeting) =
@@ -225,7 +225,7 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// Starts a program in place of the running one. The pages get its lists, which are empty for a program without a prompt.
+    /// Replaces the running program. The pages receive the lists of the new program, which are empty for a program without a prompt.
     fn start_program(&mut self, program: Program) -> Result<(), BoardError> {
         let Program {
             name,
@@ -392,8 +392,8 @@ impl<'a> Session<'a> {
     }
 
     /// Queues a request until the console waits for a command. It replaces a queued request with
-    /// the same [`Request::key`]. A [`Request::Help`] above the limit is dropped, which cannot
-    /// happen to a correct page, because the firmware has fewer commands.
+    /// the same [`Request::key`]. A [`Request::Help`] above the limit is dropped. Only an invalid
+    /// page sends so many, because the firmware has fewer commands.
     fn keep(&mut self, request: Request) {
         self.waiting
             .retain(|earlier| earlier.key() != request.key());

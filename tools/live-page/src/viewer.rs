@@ -308,7 +308,7 @@ mod tests {
         viewer.receive_text(&upload(3), &channels).unwrap();
         viewer.receive_bytes(&[1, 2], &channels).unwrap();
         assert!(viewer.receive_bytes(&[3, 4], &channels).is_err());
-        assert!(queue.try_recv().is_err(), "the board gets nothing");
+        assert!(queue.try_recv().is_err(), "no request reaches the board");
     }
 
     #[test]

@@ -43,8 +43,8 @@ export function startConsole(send) {
   }
 
   function run(typed) {
-    // Replaces tabs, and unpaired surrogates, which the browser's limit on the length leaves of a
-    // character.
+    // Replaces tabs and unpaired surrogates. The browser's limit on the length of the input may cut a
+    // surrogate pair.
     const line = typed.replace(/[\t\p{Surrogate}]/gu, " ");
     if (line.trim() === "") return;
     if (history.at(-1) !== line) history.push(line);

@@ -12,8 +12,8 @@ const COLOURS = Uint32Array.from({ length: 65536 }, (_, colour) => {
   return ((255 << 24) | (((b << 3) | (b >> 2)) << 16) | (((g << 2) | (g >> 4)) << 8) | ((r << 3) | (r >> 2))) >>> 0;
 });
 
-// Shows pixels as squares if each is at least two pixels of the screen wide. At smaller factors, squares would have unequal widths, and make
-// stair steps at smooth edges.
+// Draws each pixel as a square if it is at least two pixels of the screen wide. With a smaller factor, squares would have unequal widths,
+// which would make smooth edges jagged.
 function chooseScaling() {
   const factor = (canvas.clientWidth * devicePixelRatio) / canvas.width;
   canvas.classList.toggle("squares", factor >= 2);

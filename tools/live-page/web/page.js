@@ -11,7 +11,7 @@ import { startOrbit } from "./orbit.js";
 const element = (id) => document.getElementById(id);
 let holder = "nobody";
 let sendData;
-// What the page's address names, until the page has shown it.
+// The parameters after `#` in the page's URL; empty after the page has processed them.
 let address = new URLSearchParams(location.hash.slice(1));
 
 // Messages that make the last notice obsolete.
@@ -37,7 +37,7 @@ const showSample = startCurves();
 const motion = startMotion(send, notify);
 startOrbit(send);
 
-const HOLDERS = { you: "You have control.", other: "Another page has control; this one only watches.", nobody: "No page has control." };
+const HOLDERS = { you: "You have control.", other: "Another page has control; this page only watches.", nobody: "No page has control." };
 
 // Shows who has control. A page without control has disabled controls.
 function setHolder(found) {
@@ -86,7 +86,7 @@ function choice(name, choose) {
   return button;
 }
 
-// Offers the programs beside the page, if it has any.
+// Shows buttons for the programs in the page's folder, if any.
 async function showPrograms() {
   const response = await fetch("programs.json").catch(() => undefined);
   const programs = response?.ok ? await response.json().catch(() => []) : [];
@@ -94,7 +94,8 @@ async function showPrograms() {
   element("programs").replaceChildren(...programs.map(({ name, file }) => choice(name, () => fetchFile(file))));
 }
 
-// Shows what the page's address names, once: `#scene=NAME`, `#mesh=NAME`, `#field=NAME` or `#program=FILE`, a file beside the page.
+// Shows the scene, mesh, field or program that the page's URL names, once: `#scene=NAME`, `#mesh=NAME`, `#field=NAME`, or
+// `#program=FILE` with a file in the page's folder.
 function followAddress() {
   if (holder !== "you" || lists === undefined) return;
   for (const list of LISTS) {

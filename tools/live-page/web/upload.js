@@ -86,7 +86,7 @@ export function startUpload(send, sendBytes, notify) {
         });
         contents.push(bytes);
       }
-      // A long path is cut to its end.
+      // Of a long path, only the last characters are sent.
       heads = files.map(({ path }, i) => ({ name: [...path].slice(-MAX_NAME).join(""), bytes: contents[i].byteLength }));
     } catch ({ message }) {
       return notify(message);
