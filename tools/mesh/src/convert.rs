@@ -25,8 +25,8 @@ pub use textures::{TextureOptions, TextureReport};
 pub struct Options {
     /// Keeps the coordinates. Otherwise the mesh is scaled to the 1×1×1 box about the origin.
     pub keep_scale: bool,
-    /// Keeps the triangles in the order of the file. Otherwise those with blended textures come last, in the order of the file, and the
-    /// others are reordered if this reduces the number of vertices that the engine fetches.
+    /// Keeps the triangles in the order of the file. Otherwise triangles with blended textures come last, in the order of the file, and the
+    /// other triangles are reordered if this reduces the number of vertices that the engine fetches.
     pub keep_order: bool,
     /// Reverses faces with the wrong winding.
     pub fix_winding: bool,
@@ -42,7 +42,7 @@ pub struct Report {
     /// Number of polygons in the file, plus the added back faces.
     pub faces: usize,
     /// Whether the surface is known to be smooth: the file has a normal for each corner, or the generator states it. False for `.glm` files,
-    /// whose normals may be means of those of faces.
+    /// whose normals may be averages of face normals.
     pub smooth: bool,
     /// Number of vertices in the mesh. A vertex in several chunks is counted once per chunk.
     pub vertices: u32,
@@ -104,7 +104,8 @@ pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report
         coordinates,
         triangles: mut indexed,
     } = index(polygons, &rounded, &triangles, &textures);
-    // Triangles are blended with those before them, in the order of the file.
+    // A blended triangle must be drawn after the opaque triangles behind it. The sort is stable, so blended triangles keep the order of the
+    // file.
     let is_blended = |triangle: &IndexedTriangle| textures.is_blended(triangle.texture);
     if !options.keep_order {
         indexed.sort_by_key(is_blended);

@@ -96,7 +96,7 @@ impl FormatError {
 pub struct InputError {
     /// Name of the file as given by the user.
     pub file: String,
-    /// The violation.
+    /// The violation of the format.
     pub error: FormatError,
 }
 

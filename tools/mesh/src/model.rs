@@ -73,8 +73,8 @@ fn is_inside_out(mesh: &Mesh) -> bool {
     area == [0; 3] && volume < 0
 }
 
-/// The name on a board of a file that is uploaded: that of a texture file without folder, or of a mesh file without folder and
-/// extension, with `-` in place of characters that a name cannot contain. `None` for a generator.
+/// The name under which a file is uploaded: the file's name without folder, for a mesh also without extension. `-` replaces characters that
+/// a name cannot contain. `None` for a generator.
 pub fn board_name(file: &str) -> Option<String> {
     let path = Path::new(file);
     let name = if is_texture(file) {

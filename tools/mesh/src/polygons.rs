@@ -89,7 +89,7 @@ pub struct Face {
 pub struct Texture {
     /// The name of its file, or its number in the file of the mesh, for messages.
     pub name: String,
-    /// The picture.
+    /// The picture, or what is drawn in its place.
     pub content: Content,
     /// Wrap modes and filter.
     pub sampler: Sampler,
@@ -126,7 +126,7 @@ impl Content {
 /// memory. Call [`finish`](Self::finish) before using the polygons.
 #[derive(Clone, Debug, Default)]
 pub struct Polygons {
-    /// The points.
+    /// The points of all faces, in the file's unit.
     pub points: Vec<Vector>,
     /// One colour per point, or empty.
     pub point_colours: Vec<Rgb8>,
@@ -139,9 +139,9 @@ pub struct Polygons {
     pub textures: Vec<Texture>,
     /// The corners of all faces.
     pub corners: Vec<Corner>,
-    /// The faces.
+    /// The faces, as ranges of `corners`.
     pub faces: Vec<Face>,
-    /// Whether the surface is known to be smooth or not; `None` if it is smooth when all corners have normals.
+    /// Whether the surface is smooth, if the source states this. With `None`, the surface counts as smooth if all corners have normals.
     pub is_smooth: Option<bool>,
     /// Remarks for the user, such as a missing material file; at most [`MAX_REMARKS`] from a file.
     pub remarks: Vec<String>,

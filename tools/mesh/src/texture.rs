@@ -15,7 +15,7 @@ const EXTENSIONS: [&str; 4] = ["glt", "png", "jpg", "jpeg"];
 /// Opacity below which the texels of a picture are transparent, if no other is requested.
 pub const CUTOFF: f32 = 0.5;
 
-/// Whether the extension of a file's name is that of a texture file.
+/// Whether a file's name has the extension of a texture file.
 pub fn is_texture(name: &str) -> bool {
     let extension = Path::new(name).extension();
     extension.is_some_and(|extension| {

@@ -65,7 +65,7 @@ pub struct SceneFile {
     scenes: Vec<SceneFile>,
     /// Whether depth codes are requested in addition to the colours.
     pub(crate) depth: bool,
-    /// Whether the build has the geometry pass of the triangle engine, if the scene needs it.
+    /// Whether gateware for the scene includes the geometry pass of the triangle engine, if the scene needs this pass.
     pub(crate) geometry: bool,
     pub(crate) lanes: Option<u8>,
     clock: Option<f64>,
@@ -170,7 +170,7 @@ impl SceneFile {
             }
         }
         if file.has_any(MESHES) && !file.has_any(&["field", "background"]) {
-            // Boards without the gateware for it have another default.
+            // Boards whose gateware cannot draw gradients have another default.
             self.add_default(file, "background", Background::GRADIENT);
         }
         let lights = self.scene.appearance.lights.len();
@@ -526,7 +526,7 @@ fn check_animation(file: &File, value: &Value, scene: &Scene) {
     } = scene.animation;
     let refuse = |expected| file.refuse("animate", value, expected);
     if !azimuth.is_zero() && !file.has("camera") {
-        refuse("the key camera beside azimuth, whose distance it keeps");
+        refuse("the key camera, because azimuth keeps the distance of the camera");
     }
     let mut field = scene.field;
     if !orbit.is_zero() && field.as_mut().and_then(Field::moving).is_none() {
@@ -578,7 +578,7 @@ fn steer(file: &File) -> (Steer, Feature) {
         return refuse("fixed or buttons beside program");
     }
     if around && !file.has("camera") {
-        return refuse("the key camera beside it, whose distance it keeps");
+        return refuse("the key camera, because this control keeps the distance of the camera");
     }
     let command = text.split_ascii_whitespace().collect::<Vec<_>>().join(" ");
     (Steer::Command(command), feature)

@@ -26,14 +26,14 @@ pub struct Report {
     pub levels: usize,
     /// Whether the texture has transparent texels.
     pub cut_out: bool,
-    /// How it is blended with the picture behind it: a number of eighths, `add`, or `none`.
+    /// How the texture is blended with the picture behind it: a number of eighths, `add`, or `none`.
     pub blend: &'static str,
     /// Length of the texture in bytes.
     pub bytes: usize,
     /// Root mean square of the differences between the picture, after resizing, and the opaque texels of the largest level, over the
     /// three channels, in units of 1/255.
     pub error_rms: f64,
-    /// The largest of these differences.
+    /// The largest of the differences from which `error_rms` is computed.
     pub error_max: f64,
     /// Remarks for the user, such as the sizes before and after resizing.
     pub remarks: Vec<String>,
@@ -155,8 +155,8 @@ pub fn convert(picture: &Picture, options: &Options) -> Result<(Vec<u8>, Report)
     Ok((bytes, report))
 }
 
-/// Converts a texture again from its largest level; `None` keeps its format or its blend. A texture that already satisfies the options is
-/// kept unchanged with all its levels.
+/// Converts a texture again from its largest level. A `format` or `blend` of `None` keeps the value of the texture. A texture that already
+/// satisfies the options is kept unchanged with all its levels.
 ///
 /// # Errors
 /// As for [`convert`].

@@ -142,7 +142,7 @@ fn spread(from: usize, to: usize, wrap: Wrap) -> Vec<Vec<(usize, f32)>> {
     }
     let inside = |place: i64| match wrap {
         Wrap::Repeat => place.rem_euclid(from as i64),
-        // The mirrored texture begins with the edge texel.
+        // The mirror image begins with the edge texel, so it is clamped like an edge.
         Wrap::Mirror | Wrap::Clamp => place.clamp(0, from as i64 - 1),
     };
     for output in 0..to {

@@ -16,7 +16,7 @@ pub const MAX_BYTES: u64 = 256 << 20;
 /// Maximum number of characters of a decoder's message in an error.
 const MAX_MESSAGE: usize = 200;
 
-/// A picture.
+/// A picture in memory, with 8 bits per channel.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
     /// Width and height, at least 1.

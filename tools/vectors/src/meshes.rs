@@ -52,7 +52,7 @@ pub fn mesh(triangles: &[Triangle], most: usize) -> Vec<u8> {
                 texture: 0,
                 indices: [0, 1, 2].map(|corner| 3 * number + corner),
                 colour: Rgb565(*colour),
-                // A triangle's normal only dims its colour, so any vector serves: here the position of a corner.
+                // A triangle's normal only dims its colour, so any vector can be used: here the position of a corner.
                 normal: corners[0],
             };
             body.extend(triangle.to_bytes());
@@ -121,7 +121,7 @@ pub fn textured_square(textures: &[Vec<u8>], repeats: f64) -> Vec<u8> {
     squares(&[(0.0, [1, textures.len() as u8])], textures, repeats)
 }
 
-/// A square as of [`textured_square`] for each texture, in their order from the lowest, `gap` world units apart.
+/// A square like [`textured_square`] for each texture. The first texture has the lowest square; the squares are `gap` world units apart.
 ///
 /// # Panics
 /// If the textures are too large for a mesh, or a square is above 2 world units.
@@ -133,7 +133,7 @@ pub fn textured_layers(textures: &[Vec<u8>], repeats: f64, gap: f64) -> Vec<u8> 
     squares(&layers, textures, repeats)
 }
 
-/// Squares at heights, each with the numbers of the textures of its halves.
+/// A mesh of squares. Each layer is the height of a square, and the texture numbers of its two halves.
 fn squares(layers: &[(f64, [u8; 2])], textures: &[Vec<u8>], repeats: f64) -> Vec<u8> {
     let corners = [[-2.0, -2.0], [2.0, -2.0], [2.0, 2.0], [-2.0, 2.0]];
     let up = [0, 0, 1 << 14];
@@ -161,7 +161,7 @@ fn squares(layers: &[(f64, [u8; 2])], textures: &[Vec<u8>], repeats: f64) -> Vec
     mesh::encode_with(&vertices, &triangles, &attributes, textures).unwrap()
 }
 
-/// A mesh about the origin with a texture around it; its seam is behind, as seen from -y.
+/// A mesh about the origin with a texture wrapped around it. Seen from -y, the seam of the texture is at the back.
 ///
 /// # Panics
 /// If the texture is too large for a mesh.

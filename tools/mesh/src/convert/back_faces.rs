@@ -12,8 +12,8 @@ fn double_sided(polygons: &Polygons) -> Vec<usize> {
     faces.map(|(number, _)| number).collect()
 }
 
-/// Whether the back of a double-sided face can be visible, which is so unless these faces enclose
-/// solids.
+/// Whether the back of a double-sided face can be visible: true unless the double-sided faces
+/// enclose solids.
 pub fn are_needed(polygons: &Polygons) -> bool {
     let faces = double_sided(polygons);
     !faces.is_empty() && !winding::are_solid(polygons, &faces)
@@ -52,7 +52,7 @@ pub fn add(polygons: &mut Polygons) -> Result<(), FormatError> {
         polygons.faces[number].double_sided = false;
     }
     polygons.remark(format!(
-        "{} double-sided faces get back faces, which the engine draws as further faces",
+        "{} double-sided faces get back faces, which the engine draws as additional faces",
         faces.len()
     ));
     Ok(())

@@ -8,9 +8,9 @@ use glint_model::triangle::vertex_cache;
 /// A mesh in the board's memory layout, and the number of vertices that the engine fetches to draw
 /// it.
 pub struct Encoded {
-    /// The mesh.
+    /// The encoded mesh.
     pub bytes: Vec<u8>,
-    /// Number of fetches.
+    /// Number of vertex fetches to draw the mesh once.
     pub fetches: u32,
 }
 
@@ -92,7 +92,7 @@ struct Fans {
     fetches: usize,
     /// Vertices of the drawn triangles, most recent last.
     recent: Vec<u32>,
-    /// No vertex before this one has triangles left.
+    /// The vertices before this vertex have no triangles left.
     cursor: usize,
 }
 

@@ -256,8 +256,8 @@ fn is_white(polygons: &Polygons, face: &Face) -> bool {
 /// Opacity below which texels of a blended texture are transparent: less than half of an eighth.
 const INVISIBLE: f32 = 1.0 / 16.0;
 
-/// How surfaces of this opacity, with a picture, are blended with the picture behind them: with the average opacity of the texels whose
-/// opacity is at least the cutoff, to the nearest eighth. `None` if they are invisible.
+/// Blend of surfaces with this opacity and this texture picture: the product of `opacity` and the average opacity of the texels at or above
+/// the cutoff, rounded to the nearest eighth. `None` if the surfaces are invisible.
 fn share(opacity: u8, picture: &Picture, cutoff: f32) -> Option<Blend> {
     let least = (cutoff * 255.0).ceil() as u8;
     let opacities = picture.texels.iter().map(|texel| texel[3]);
@@ -565,7 +565,7 @@ mod tests {
         assert_eq!(reported, ["none", "4", "none"]);
         let mut added = Options::default();
         added.textures.blend = Some(Blend::Additive);
-        // Also of faces that would be invisible.
+        // Additive blending also keeps the faces that would otherwise be invisible.
         let (bytes, _) = convert(&polygons, added).unwrap();
         let mesh = glm::check(&bytes).unwrap();
         let blends: Vec<_> = mesh.textures().map(|texture| texture.blend()).collect();

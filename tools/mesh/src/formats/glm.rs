@@ -15,7 +15,7 @@ pub fn parse(bytes: &[u8]) -> Result<Polygons, FormatError> {
     let world = |q: [i16; 3]| q.map(|c| f64::from(c) / 16384.0);
     let rgb8 = |colour: Rgb565| Rgb8(colour.to_rgb888());
     let mut polygons = Polygons::default();
-    // The normals may be means of those of faces.
+    // The normals may be averages of face normals.
     polygons.is_smooth = Some(false);
     for (number, texture) in (1..=MAX_TEXTURES).zip(mesh.textures()) {
         polygons.add_texture(Texture {

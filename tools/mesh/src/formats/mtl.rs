@@ -12,7 +12,7 @@ pub struct Material {
     pub colour: Option<Rgb8>,
     /// The texture of the diffuse colour (`map_Kd`).
     pub texture: Option<Map>,
-    /// Opacity, 0 to 255: `d`, and by `Tr`, which has no effect beside `d`.
+    /// Opacities, 0 to 255, stated by `d` and by `Tr`; `Tr` counts only without `d`.
     opacities: [Option<u8>; 2],
 }
 

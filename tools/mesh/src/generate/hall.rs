@@ -58,7 +58,7 @@ pub fn fence() -> Result<Polygons, FormatError> {
 
 /// A window along the x axis, seen from both sides: four panes of tinted glass in a wooden frame.
 pub fn window() -> Result<Polygons, FormatError> {
-    /// Ends of the panes across and upwards, in texels of the frame's picture.
+    /// Start and end of each of the two panes in a row or a column, in texels of the frame's picture.
     const PANES: [[u32; 2]; 2] = [[FRAME, SIDE / 2 - BAR], [SIDE / 2 + BAR, SIDE - FRAME]];
     let mut polygons = Polygons::default();
     let wood = add_picture(&mut polygons, "wood", None, wood)?;

@@ -76,7 +76,7 @@ impl Tree {
         }
     }
 
-    /// Removes a point.
+    /// Removes a point that has been clipped.
     pub fn remove(&mut self, index: usize) {
         self.removed[index] = true;
         let place = self.place[index] as usize;

@@ -217,7 +217,7 @@ pub fn load(uri: &str, what: &str, beside: Beside) -> Result<Vec<u8>, FormatErro
     }
 }
 
-/// Type of a number.
+/// Component type of an accessor.
 #[derive(Clone, Copy)]
 enum Kind {
     I8,

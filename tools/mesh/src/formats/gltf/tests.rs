@@ -476,7 +476,7 @@ fn opacities_of_blended_materials() {
     assert_eq!(read(blended, "1").textures[0].opacity, Some(255));
     assert_eq!(read(blended, "-3").textures[0].opacity, Some(0));
     assert_eq!(read("", "0.5").textures[0].opacity, None);
-    // Without a picture.
+    // A blended material without a picture.
     let text = TWO_MESHES.replacen(
         "\"pbrMetallicRoughness\": {",
         "\"alphaMode\": \"BLEND\", \"pbrMetallicRoughness\": {",

@@ -265,7 +265,7 @@ fn read_faces(
     Ok(())
 }
 
-/// Reads triangle strips: each index adds a triangle with the two before it, and -1 starts a new strip.
+/// Reads triangle strips: each index forms a triangle with the two previous indices, and -1 starts a new strip.
 fn read_strips(
     element: &Element,
     source: &mut impl Source,
