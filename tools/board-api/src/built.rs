@@ -12,7 +12,7 @@ pub const HOME: &str = "GLINT_HOME";
     "{file}: found in none of {searched}; run `{command}` in a clone of Glint, and set {HOME} to the path of the clone"
 )]
 pub struct NotBuilt {
-    /// The file.
+    /// Path of the missing file in a clone of Glint.
     pub file: PathBuf,
     /// The folders that were searched.
     pub searched: String,

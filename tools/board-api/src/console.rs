@@ -14,7 +14,7 @@ pub enum ConsoleError {
     /// The firmware refuses the command.
     #[error("the board refused `{command}`: {reason}")]
     Refused {
-        /// The command.
+        /// The command that was refused.
         command: String,
         /// The text after `error: ` in the reply.
         reason: String,
@@ -51,11 +51,11 @@ pub enum ConsoleError {
     /// A reply that does not have the expected form.
     #[error("the reply to `{command}`: expected {expected}, found {found:?}")]
     Reply {
-        /// The command.
+        /// The command that was sent.
         command: String,
-        /// The expected form.
+        /// The expected form of the reply.
         expected: String,
-        /// The reply.
+        /// The reply that was received.
         found: String,
     },
 }

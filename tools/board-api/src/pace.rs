@@ -34,7 +34,7 @@ impl Clock for SystemClock {
     }
 }
 
-/// Largest delay behind real time that a board makes up for. A larger delay is not made up for.
+/// Maximum delay behind real time that a board catches up. After a longer delay, real time counts from the current cycle.
 const MAX_DELAY: Duration = Duration::from_millis(50);
 
 /// Relates a board's cycles to real time.
@@ -57,13 +57,13 @@ impl<C: Clock> Pace<C> {
         }
     }
 
-    /// The clock.
+    /// The clock that limits the board.
     pub fn clock(&self) -> &C {
         &self.clock
     }
 
     /// Waits until real time has reached cycle `cycle` of the board. A board that is more than 50
-    /// ms late does not make up for the delay.
+    /// ms late does not catch up the delay.
     pub fn wait(&mut self, cycle: u64) {
         let early = self.early(cycle);
         if !early.is_zero() {
@@ -116,10 +116,10 @@ mod tests {
         };
         assert_eq!(early(0, 0), 0);
         assert_eq!(early(10, 25), 15);
-        // The board makes up for a delay of 40 ms.
+        // The board catches up a delay of 40 ms.
         assert_eq!(early(100, 60), 0);
         assert_eq!(early(100, 110), 10);
-        // The board does not make up for a delay of 90 ms.
+        // The board does not catch up a delay of 90 ms.
         assert_eq!(early(200, 110), 0);
         assert_eq!(early(200, 115), 5);
         pace.wait(7 + 115_000);

@@ -8,7 +8,7 @@ const T0: u32 = 5;
 const T1: u32 = 6;
 const ZERO: u32 = 0;
 
-/// Returns ROM contents: a program that gives the controller access to the DDR3 and jumps to the start of main RAM.
+/// Returns ROM contents: a program that connects the memory controller to the DDR3 and jumps to the start of main RAM.
 ///
 /// A real DDR3 would first require set-up of its mode registers and training of the PHY; the model requires neither.
 pub(crate) fn stub() -> Vec<u8> {

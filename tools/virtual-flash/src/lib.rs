@@ -22,13 +22,13 @@ const DATA_START: u32 = ADDRESS_END + 8;
 pub struct Pins {
     /// CS#: the flash is selected while it is low.
     pub cs_n: bool,
-    /// The clock.
+    /// The clock; the flash samples commands at its rising edge.
     pub clk: bool,
     /// The data lines; undriven lines are high.
     pub lines: u8,
 }
 
-/// The flash.
+/// A read-only SPI flash.
 #[derive(Clone, Debug)]
 pub struct Flash {
     bytes: Vec<u8>,
@@ -37,7 +37,7 @@ pub struct Flash {
     clocks: u32,
     /// The last 32 bits of line 0 before [`ADDRESS_END`]: command and address.
     received: u32,
-    /// The half byte that the flash sends.
+    /// The nibble that the flash sends.
     sent: Option<u8>,
     commands: u64,
 }
@@ -94,7 +94,7 @@ impl Flash {
         self.sent
     }
 
-    /// The half byte at index `place`, the high half of a byte first. The address wraps from the last to the first.
+    /// The nibble at index `place`, the high nibble of a byte first. The address wraps from the last to the first.
     fn half_byte(&self, place: u32) -> u8 {
         let address = self.received.wrapping_add(place / 2) as usize % MAX_BYTES;
         let byte = self.byte(address);

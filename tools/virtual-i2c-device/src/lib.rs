@@ -74,7 +74,7 @@ struct Edges {
 
 /// A device, driven by the levels of SCL and SDA.
 pub struct Wires<D> {
-    /// The device.
+    /// The registers of the device.
     pub chip: D,
     /// Log of the traffic; `None` if no log is kept. S is a start, P a stop. A byte is followed by + if it was acknowledged, and
     /// by - if not.

@@ -51,7 +51,7 @@ pub enum Model {
 }
 
 impl Model {
-    /// The 7-bit address.
+    /// The 7-bit SCCB address.
     #[must_use]
     pub const fn address(self) -> u8 {
         match self {

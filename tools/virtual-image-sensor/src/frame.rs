@@ -12,7 +12,7 @@ pub enum Error {
     Read {
         /// Path of the file or folder.
         path: PathBuf,
-        /// Reason.
+        /// Error of the operating system.
         source: std::io::Error,
     },
     /// The file is not a PNG picture.
@@ -20,7 +20,7 @@ pub enum Error {
     Decode {
         /// Path of the file.
         path: PathBuf,
-        /// Reason.
+        /// Error of the PNG decoder.
         source: png::DecodingError,
     },
     /// A folder without pictures.

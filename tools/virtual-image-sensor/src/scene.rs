@@ -19,7 +19,7 @@ const SAMPLES: usize = 4;
 pub struct Hand {
     /// Coordinates x and y of the centre of mass in pixels. The centre of the top left pixel is (0, 0).
     pub centre: [f64; 2],
-    /// Area in pixels.
+    /// Number of pixels that the hand covers.
     pub area: f64,
 }
 

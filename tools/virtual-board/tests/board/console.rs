@@ -165,7 +165,7 @@ fn pins_are_read_and_driven() {
     board.set_buttons(0b0101);
     board.set_switches(0xbeef);
     assert!(command(&mut board, "buttons").contains("buttons 0x5\r\nswitches 0xbeef\r\nok"));
-    assert_eq!(board.leds(), 1, "the first LED shows life");
+    assert_eq!(board.leds(), 1, "only the heartbeat LED is lit");
     command(&mut board, "leds 42405");
     assert_eq!(board.leds(), 42405);
 }

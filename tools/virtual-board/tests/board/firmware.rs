@@ -57,7 +57,7 @@ pub trait Console: Uart + Sized {
     /// Runs until the board has sent `expected`; returns the output up to the end of `expected`.
     ///
     /// # Panics
-    /// If `expected` has not come within [`LIMIT`]; the message contains `what`, the test's action.
+    /// If `expected` has not arrived within [`LIMIT`]; the message contains `what`, the test's action.
     fn expect(&mut self, expected: &str, what: &str) -> String {
         self.read_until(expected, LIMIT)
             .unwrap_or_else(|error| panic!("`{what}`: {error}"))

@@ -12,7 +12,7 @@ use virtual_board::virtual_image_sensor::{ImageSensor, Model, Scene, Timing};
 use virtual_board::virtual_mpu6050::{Fault, State};
 use virtual_board::{Simulation, Uart};
 
-/// All parts.
+/// The parts that the self-test of the emulated board tests.
 const PARTS: [&str; 21] = [
     "identity",
     "clock",

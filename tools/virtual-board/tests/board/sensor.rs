@@ -317,8 +317,8 @@ fn the_camera_follows_a_script() {
     assert_eq!(value(&answer, "video_underflows"), "0");
 }
 
-/// Every fault of the sensor is reported on the console, ends in time, and does not affect the pictures. This takes a
-/// second of board time.
+/// The firmware reports every fault of the sensor on the console, and recovers in time; the pictures are not affected. This
+/// takes a second of board time.
 #[test]
 fn every_fault_is_reported_and_recovered() {
     let mut board = emulated_with_sensor(|_| State::default());
@@ -334,7 +334,7 @@ fn every_fault_is_reported_and_recovered() {
     let gone = "i2c: no device acknowledged the address";
     // A read in progress ends without its last bytes, any other transfer without an acknowledgement.
     let vanished = "the sensor vanished within a sample";
-    // For each case: the fault, the time-out of its report in ms, the time-out of its end in ms, and the texts that may report it.
+    // For each case: the fault, the time-outs of its report and of the recovery in ms, and the texts that may report it.
     let faults: [(Option<Fault>, u64, u64, &[&str]); 8] = [
         (Some(Fault::Absent), 10, 100, &[gone, vanished]),
         (

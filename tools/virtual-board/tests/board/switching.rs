@@ -15,8 +15,8 @@ fn is_black(frame: &Frame) -> bool {
     frame.pixels.iter().all(|colour| *colour == 0)
 }
 
-/// Checks video frames: each is one of the `whole` pictures, or black, which is allowed while the size changes; and the picture `last`
-/// comes after another picture.
+/// Checks that each video frame is one of the `whole` pictures, or black, which is allowed while the size changes. Ends when the picture
+/// `last` follows another picture.
 fn check(board: &mut EmulatedBoard, whole: &[Frame], last: usize) {
     let mut seen = Vec::new();
     for number in 0..FRAMES {

@@ -11,7 +11,7 @@ use crate::program::assemble;
 
 /// Address of the program's results.
 const RESULTS: u32 = MAIN_RAM.base + 0x1000;
-/// Number of accesses.
+/// Number of accesses to unused addresses.
 const ACCESSES: usize = 4;
 /// Number of words of results: two before the first access, two after each access, and one at the end.
 const WORDS: usize = 2 * ACCESSES + 3;
