@@ -4,8 +4,8 @@
 //! command and a payload. It answers each complete frame with one letter, in order, and drops a frame that is still incomplete
 //! after 250 ms. A frame contains its load address, so it may be sent again at any time.
 //!
-//! The letters contain no frame number, so after a lost answer the host could take the answer to
-//! the next frame for it. The host therefore sends frames in batches. A batch is complete when the
+//! The letters contain no frame number, so after a lost answer the host could mistake the answer to
+//! the next frame for the lost one. The host therefore sends frames in batches. A batch is complete when the
 //! answers are exactly one `K` per frame. Otherwise the host waits until the line has been quiet
 //! for longer than the BIOS's time-out, which resynchronises both sides to the start of a frame,
 //! and sends the whole batch again. After a failure, batches and frames get shorter, because a
@@ -80,7 +80,7 @@ mod tests {
         Answer,
         /// Frames, without a time limit.
         Frames,
-        /// A command.
+        /// A command at the prompt.
         Command,
         /// Nothing: a program runs.
         Nothing,
@@ -164,7 +164,7 @@ mod tests {
             }
         }
 
-        /// Receives a byte.
+        /// Processes a byte from the host.
         fn hear(&mut self, byte: u8) {
             self.expire();
             match self.mode {

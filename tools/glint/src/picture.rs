@@ -77,7 +77,7 @@ pub enum Animation<W: Write> {
     Png(png::Writer<W>),
     /// A GIF. Each image has its own palette of up to 256 colours.
     Gif {
-        /// The encoder.
+        /// Encoder of the images.
         encoder: gif::Encoder<W>,
         /// Duration of an image in 1/100 s.
         delay: u16,

@@ -1,4 +1,4 @@
-//! New projects of programs: files made from templates.
+//! Creates projects for new programs from templates.
 
 use glint_board_api::built;
 use serde_json::Value;
@@ -8,10 +8,10 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// The package of the library of programs, in a clone of Glint.
+/// Folder of the package `glint-program`, the library of programs, in a clone of Glint.
 const LIBRARY: &str = "firmware/program";
 
-/// Names of cargo's own folders, which no program may have.
+/// Names of folders that cargo creates; a program cannot have such a name.
 const RESERVED: [&str; 4] = ["build", "deps", "examples", "incremental"];
 
 /// Files of a project and their templates.
@@ -35,10 +35,10 @@ const FILES: [(&str, &str); 5] = [
     (".gitignore", "/target\n"),
 ];
 
-/// Reason why a project is not made.
+/// Reason why a project cannot be created.
 #[derive(Debug, thiserror::Error)]
 pub enum ProjectError {
-    /// The name is no name of a package.
+    /// The name is not a valid package name.
     #[error(
         "the name {0:?}: expected letters a to z, digits, - and _, beginning with a letter, and none of cargo's own names"
     )]
@@ -67,7 +67,7 @@ pub enum ProjectError {
     },
 }
 
-/// Where the project gets the library of programs.
+/// Source of the library of programs for a project.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Source {
     /// A clone of Glint.
@@ -77,10 +77,10 @@ pub enum Source {
 }
 
 impl Source {
-    /// The source that `text` states: a path of a clone, or a URL.
+    /// Parses a source: the path of a clone, or a URL.
     ///
     /// # Errors
-    /// The path is not that of a clone.
+    /// No clone of Glint is at the path.
     pub fn stated(text: &str) -> Result<Self, ProjectError> {
         if text.contains("://") {
             return Ok(Self::Git(text.to_owned()));
@@ -91,10 +91,11 @@ impl Source {
         })
     }
 
-    /// The clone of Glint in `GLINT_HOME`, above this program or the current folder, or from which `cargo install` has built this program.
+    /// Finds a clone of Glint: in `GLINT_HOME`, in the folders above this program or the current folder, or the clone from which
+    /// `cargo install` has built this program.
     ///
     /// # Errors
-    /// There is none.
+    /// No clone was found.
     pub fn found() -> Result<Self, ProjectError> {
         let folders: Vec<_> = built::folders()
             .into_iter()
@@ -113,7 +114,7 @@ impl Source {
 
     /// The dependency in a manifest.
     fn dependency(&self) -> String {
-        // The text form of a string in TOML is that of JSON, for paths and URLs.
+        // For paths and URLs, a string has the same syntax in TOML as in JSON.
         match self {
             Self::Clone(path) => format!(
                 "path = {}",
@@ -124,14 +125,14 @@ impl Source {
     }
 }
 
-/// The first folder with the library of programs, with its absolute path.
+/// The first of the folders that contains the library of programs, as an absolute path.
 fn clone_in(folders: impl IntoIterator<Item = PathBuf>) -> Option<Source> {
     let mut folders = folders.into_iter();
     let found = folders.find(|path| path.join(LIBRARY).join("Cargo.toml").exists())?;
     Some(Source::Clone(found.canonicalize().ok()?))
 }
 
-/// The clone from which `cargo install --path` has installed this program, by cargo's own list of installed programs.
+/// The clone from which `cargo install --path` has installed this program, according to cargo's list of installed programs.
 fn installed_from() -> Option<PathBuf> {
     let home = env::var_os("CARGO_HOME").map(PathBuf::from);
     let home = home.or_else(|| Some(env::home_dir()?.join(".cargo")))?;
@@ -148,7 +149,7 @@ fn installed_from() -> Option<PathBuf> {
 
 /// Writes a project into the new folder `path`, whose last part is the project's name.
 ///
-/// The folder is written under another name and renamed at the end, so that there is never half of a project.
+/// The folder is written under a temporary name and renamed at the end, so that a failure leaves no incomplete project.
 ///
 /// # Errors
 /// [`ProjectError`].
@@ -178,7 +179,7 @@ pub fn write(path: &Path, source: &Source) -> Result<(), ProjectError> {
             .replace("@HOST@", &host);
         put(&folder.path().join(file), text.as_bytes())?;
     }
-    // The versions that Glint itself is tested with. Cargo removes the packages that the project does not use.
+    // The lock file selects the versions with which Glint is tested. Cargo removes the packages that the project does not use.
     if let Source::Clone(clone) = source
         && let Ok(lock) = fs::read(clone.join("Cargo.lock"))
     {
@@ -190,7 +191,7 @@ pub fn write(path: &Path, source: &Source) -> Result<(), ProjectError> {
     open(path).map_err(failed(path))
 }
 
-/// Gives a folder the permissions of a new folder; those of a temporary one are for its owner alone.
+/// Lets all users read a folder, because only its owner can read a temporary folder.
 fn open(path: &Path) -> io::Result<()> {
     use std::os::unix::fs::PermissionsExt;
     fs::set_permissions(path, fs::Permissions::from_mode(0o755))
@@ -205,7 +206,7 @@ fn put(path: &Path, bytes: &[u8]) -> Result<(), ProjectError> {
     })
 }
 
-/// Whether cargo accepts this name of a package.
+/// Whether cargo accepts this name for a package.
 fn is_name(name: &str) -> bool {
     let is_part = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-' || c == '_';
     let is_made_of_parts = name.chars().all(is_part) && !RESERVED.contains(&name);
@@ -223,7 +224,7 @@ fn host() -> Result<String, ProjectError> {
     })
 }
 
-/// Whether the compiler has the libraries of the soft core's target; true if this cannot be found out.
+/// Whether the libraries of the soft core's target are installed; true if rustc does not run.
 #[must_use]
 pub fn has_target(target: &str) -> bool {
     let arguments = ["--print", "target-libdir", "--target", target];

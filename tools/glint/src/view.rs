@@ -22,7 +22,7 @@ struct ViewFile {
     near: f64,
     /// `perspective`, which is the default, or `orthographic`.
     projection: Option<String>,
-    /// Half the height of the image plane, by default that of square pixels.
+    /// Half the height of the image plane, by default the height for square pixels.
     half_height: Option<f64>,
     /// Middle of the picture in the image plane along u and v, by default 0.
     middle: Option<[f64; 2]>,

@@ -59,7 +59,7 @@ impl Form {
 pub struct Source {
     /// The binary form, up to the end of the program.
     pub bytes: Vec<u8>,
-    /// What follows the end and is ignored, for a warning; `None` if nothing does.
+    /// Text of a warning about ignored data after the end; `None` if there are no such data.
     pub ignored: Option<String>,
 }
 

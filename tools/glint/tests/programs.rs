@@ -50,7 +50,7 @@ fn run_for(board: &mut SimulatedBoard<EmulatedBoard>, buttons: u8, centiseconds:
     frame
 }
 
-/// Number of pixels of a frame for which `is_wanted`.
+/// Number of pixels of a frame for which `is_wanted` is true.
 fn count(frame: &Frame, is_wanted: impl Fn([u8; 3]) -> bool) -> usize {
     let colours = frame.pixels.iter().map(|&pixel| Rgb565(pixel).to_rgb888());
     colours.filter(|&colour| is_wanted(colour)).count()
@@ -133,7 +133,7 @@ fn the_fighter_ends_after_three_crashes_and_starts_again() {
     assert_eq!(board.inner().leds(), 7);
 }
 
-/// An image sensor with a hand at this place in its frame.
+/// An image sensor with a hand at this position in its frame.
 fn hand_at(centre: [f64; 2]) -> ImageSensor {
     let area = 320.0 * 240.0 * 0.06;
     let mut scene = Scene::new([320, 240], move |_| vec![Hand { centre, area }]);
@@ -186,7 +186,8 @@ fn the_oscilloscope_draws_gravity_and_holds_its_picture() {
     let mut board = start("scope");
     let blank = run_for(&mut board, 0, 10);
     board.inner().plug(sensor::virtual_sensor(None));
-    // The trace of z is half of the range of 2 g above the middle: at line 105 of 360, drawn twice as large.
+    // The traces have a range of ±2 g, so the trace z, at 1 g, is halfway between the middle and the upper end: line 105 of 360.
+    // `scale` is the enlargement of the picture.
     run_for(&mut board, 0, 150);
     let moving = run_for(&mut board, 0, 10);
     assert_ne!(moving, blank);
@@ -344,7 +345,7 @@ fn the_fighter_runs_on_the_verilated_soc() {
     assert!(is_shown);
 }
 
-/// A process that ends with this value. `cargo run` becomes the program that it runs.
+/// A process that is killed when this value is dropped. `cargo run` replaces its own process by the program, so this also ends the program.
 struct Running(Child);
 
 impl Drop for Running {
@@ -368,7 +369,7 @@ fn a_new_project_shows_its_program_in_the_page() {
         .unwrap();
     assert!(made.status.success(), "{made:?}");
 
-    // The runner of the project is the program of this name.
+    // The runner of the project is `glint`: here the tested program.
     let path = format!(
         "{}:{}",
         glint.parent().unwrap().display(),
@@ -473,7 +474,7 @@ fn the_pages_of_programs_show_their_pictures_sizes_and_rates() {
             _ => {}
         }
         let frame = run_for(&mut board, buttons, 140);
-        // Another compiler draws at slightly other times, so the pictures may differ slightly.
+        // A program from another compiler version draws its frames at slightly different times, so the pictures may differ slightly.
         let shown = root.join(format!("docs/pictures/program-{name}.png"));
         let found = of_page(&frame);
         if updates {
@@ -503,7 +504,7 @@ fn the_pages_of_programs_show_their_pictures_sizes_and_rates() {
         let digit =
             |lit: &u8| (0..10).find(|&digit| digits::segments(char::from(b'0' + digit)) == *lit);
         let rate = match name {
-            // Its digits show the score.
+            // The digits of this program show the score, not the rate.
             "fighter" => None,
             _ => Some(
                 digits

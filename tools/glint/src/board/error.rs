@@ -14,7 +14,7 @@ pub enum OpenError {
     /// The address for a debugger cannot be used.
     #[error("{address}: expected a free address of this host for a debugger, found: {source}")]
     Debugger {
-        /// The address.
+        /// The address that was requested.
         address: std::net::SocketAddr,
         /// Error of the operating system.
         source: std::io::Error,

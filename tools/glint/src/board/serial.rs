@@ -76,7 +76,10 @@ impl Board for SerialBoard {
                 Err(error) => return Err(error.into()),
             }
             if last.elapsed() > MAX_BLOCKED {
-                let text = format!("the port has taken no byte for {} s", MAX_BLOCKED.as_secs());
+                let text = format!(
+                    "the port has accepted no byte for {} s",
+                    MAX_BLOCKED.as_secs()
+                );
                 return Err(io::Error::new(io::ErrorKind::TimedOut, text).into());
             }
         }

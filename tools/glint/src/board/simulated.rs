@@ -68,8 +68,8 @@ pub fn emulated_bios() -> Result<SimulatedBoard<EmulatedBoard>, OpenError> {
     Ok(SimulatedBoard::new(EmulatedBoard::full(&bios)))
 }
 
-/// Builds the simulated board `name` that starts with `firmware` in its memory, or with its BIOS for `None`. Returns `None` for a board
-/// on a serial port.
+/// Builds the simulated board `name` that starts with `firmware` in its memory, or with its BIOS if `firmware` is `None`. Returns
+/// `None` for a board on a serial port.
 ///
 /// # Errors
 /// As for the function that builds the board.

@@ -73,7 +73,7 @@ impl CameraArguments {
             return Err(bad_value("--up", "a model", "a --scene").into());
         }
         if shown.scene.is_some() && options.has_far_plane() {
-            return Err(bad_value("--projection", "no far plane beside --scene", "FAR").into());
+            return Err(bad_value("--projection", "no far plane with --scene", "FAR").into());
         }
         if self.is_free(options, shown) {
             let up = self.up_of(shown.model);
@@ -125,7 +125,7 @@ impl CameraArguments {
                 let still = whole(meshes(), up, angles(1), angle).map_err(refuse)?;
                 let mut views = whole(meshes(), up, angles(steps), angle).map_err(refuse)?;
                 let first = self.view(options, shown)?;
-                // A lens that an option or the scene sets stays.
+                // Keeps a lens that was set by an option or by the scene.
                 if still != [first] {
                     for view in &mut views {
                         *view = view.with_lens_of(&first);

@@ -98,7 +98,7 @@ impl Baud {
 pub struct LineArguments {
     #[command(flatten)]
     pub baud: Baud,
-    /// Firmware of the emulated or the virtual board, an ELF file or a flat binary [default: the one built by `cargo xtask firmware`].
+    /// Firmware of the emulated or the virtual board, an ELF file or a flat binary [default: the firmware of `cargo xtask firmware`].
     #[arg(long, value_name = "FILE")]
     pub firmware: Option<PathBuf>,
 }
@@ -144,8 +144,8 @@ impl LineArguments {
         })
     }
 
-    /// Starts the simulated board `name`. Its program runs when the board's serial line is read, and need not print a prompt. Returns the
-    /// places in the program's sources, too.
+    /// Starts the simulated board `name`. The program runs when the board's serial line is read. It may be a program without a prompt.
+    /// Returns the board, and the source locations of the program.
     pub fn start(&self, name: &BoardName) -> anyhow::Result<(AnyBoard, Places)> {
         self.start_by(|image| {
             let board = board::simulated(name, Some(image))?;
@@ -221,10 +221,10 @@ impl TransferArguments {
     }
 }
 
-/// The options of a picture without options.
+/// Settings of a picture for which no option is given.
 #[derive(Clone, Copy)]
 pub struct PictureDefaults {
-    /// Options of the start scene. With one sample, scenes without their own number of samples have one too.
+    /// Options of the start scene. With one sample here, scenes that do not state a number of samples also have one sample.
     pub scene: Defaults,
     /// Shading of smooth surfaces: of models whose files have normals.
     pub smooth_surfaces: Shading,
@@ -245,7 +245,7 @@ pub struct DrawingArguments {
 }
 
 impl DrawingArguments {
-    /// The defaults of a picture. The soft core takes too long for a large one, and for smooth shading.
+    /// The defaults of a picture. The soft core takes too long for a large picture, and for smooth shading.
     pub fn defaults(&self) -> PictureDefaults {
         let scene = match self.backend {
             Some(Backend::Cpu) => Defaults::SOFT_CORE,

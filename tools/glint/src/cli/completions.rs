@@ -9,7 +9,7 @@ use clap_complete::{Shell, generate};
 /// For bash: `glint completions bash > ~/.local/share/bash-completion/completions/glint`.
 #[derive(Args)]
 pub struct CompletionsArguments {
-    /// The shell.
+    /// Shell that will read the completions.
     shell: Shell,
 }
 

@@ -62,7 +62,7 @@ pub struct FlashArguments {
 
 /// Upload a model or a texture to a board under a name and show it; other uploads stay on the board.
 ///
-/// Faces with a texture show an uploaded texture in place of their own; the rest of the scene stays.
+/// An uploaded texture replaces the texture of every textured face; the rest of the scene stays.
 #[derive(Args)]
 pub struct UploadArguments {
     /// Mesh file, name of a generator, or texture: a PNG, JPEG or .glt file.

@@ -5,7 +5,7 @@ use clap::Args;
 use glint::project::{self, Source};
 use std::path::PathBuf;
 
-/// Target of the soft core.
+/// Rust target of the soft core.
 const TARGET: &str = "riscv32im-unknown-none-elf";
 
 /// Write a project for a program of your own: a game, an instrument, a demo on a board.
@@ -13,10 +13,10 @@ const TARGET: &str = "riscv32im-unknown-none-elf";
 /// `cargo run` in the new folder builds the program and shows an emulated board with it in the browser.
 #[derive(Args)]
 pub struct NewArguments {
-    /// The folder to make; its name is the program's name.
+    /// Folder to create; its name is the program's name.
     path: PathBuf,
-    /// The library of programs: the path of a clone of Glint, or the URL of a git repository [default: the clone from GLINT_HOME, around
-    /// this program or the current folder, or from which this program was installed].
+    /// Source of the library of programs: the path of a clone of Glint, or the URL of a git repository [default: the clone in GLINT_HOME,
+    /// above this program or above the current folder, or the clone from which this program was installed].
     #[arg(long, value_name = "PATH|URL")]
     glint: Option<String>,
 }
@@ -30,11 +30,11 @@ impl NewArguments {
         project::write(&self.path, &source)?;
         let path = self.path.display();
         say(format_args!(
-            "{path}: made; `cd {path}`, then `cargo run` shows it in the browser"
+            "{path}: created; `cd {path}`, then `cargo run` shows the program in the browser"
         ))?;
         if !project::has_target(TARGET) {
             note(format!(
-                "first install the compiler's target of the soft core: `rustup target add {TARGET}`"
+                "first install the Rust target of the soft core: `rustup target add {TARGET}`"
             ));
         }
         Ok(())

@@ -207,7 +207,7 @@ impl OptionArguments {
         self.get(name).is_some()
     }
 
-    /// Sets the given options in `scene`, except camera and lens; but with the far plane of a projection.
+    /// Sets the given options in `scene`, except camera and lens. Of a projection, only the far plane is set.
     ///
     /// # Errors
     /// A value is invalid, or the option requires a field.

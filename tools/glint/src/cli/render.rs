@@ -214,7 +214,8 @@ impl RenderArguments {
     }
 }
 
-/// Prints the statistics of a frame as text. The quarters of a frame that `is_divided` get the mesh, the program or the edges each.
+/// Prints the statistics of a frame as text. If `is_divided`, the frame was drawn in quarters, and the counts of triangles, segments and
+/// edges contain the whole subject once per quarter.
 pub fn print_stats(stats: &Stats, is_divided: bool) -> anyhow::Result<()> {
     let passes = if is_divided {
         Quarter::ALL.len() as u32

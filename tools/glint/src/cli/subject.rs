@@ -32,7 +32,7 @@ pub struct SubjectArguments {
     pub scene: Option<String>,
     #[command(flatten)]
     pub field: FieldArguments,
-    /// A texture that faces with a texture show in place of their own: a PNG, JPEG or .glt file.
+    /// Texture that replaces the texture of every textured face: a PNG, JPEG or .glt file.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scene", "textures"], help_heading = heading::APPEARANCE)]
     texture: Option<PathBuf>,
     #[command(flatten, next_help_heading = heading::APPEARANCE)]
@@ -45,7 +45,7 @@ pub struct SubjectArguments {
 
 impl SubjectArguments {
     /// Calls `draw` with the frame. `others` are objects in addition to the model; `instead` names
-    /// the options that can replace the model, for an error message. `defaults` are the options that are not given.
+    /// the options that can replace the model, for an error message. `defaults` are the values of options that are not given.
     ///
     /// # Errors
     /// There is nothing to draw, a file cannot be read, or an option does not apply.
@@ -160,7 +160,7 @@ impl SubjectArguments {
         })
     }
 
-    /// The camera.
+    /// The camera of the subject, after the camera options.
     pub fn view(&self, shown: &CameraSubject) -> anyhow::Result<View> {
         self.camera.view(&self.field.options, shown)
     }

@@ -324,7 +324,7 @@ impl RenderArguments {
     }
 }
 
-/// Reads a program, and warns of what follows its end.
+/// Reads a program, and warns of data after its end.
 fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
     let Source { bytes, ignored } = wireframe::read(path)?;
     if let Some(ignored) = ignored {

@@ -19,8 +19,8 @@ const QUIET_MS: u64 = 300;
 const LOUD_MS: u64 = 5_000;
 /// Time-out of an answer in milliseconds: covers the transmission of a frame on a slow line and the delay of a serial adapter.
 const ANSWER_MS: u64 = 500;
-/// Maximum number of bytes in the BIOS's answer to one frame: `C` for a wrong checksum and, after
-/// the time-out of a surplus byte, `E`, both twice if the line repeats bytes. Longer output comes
+/// Maximum number of bytes in the BIOS's answer to one frame: `C` for a wrong checksum, and
+/// `E` if a surplus byte leads to a time-out; both twice if the line repeats bytes. Longer output comes
 /// from the program.
 const MAX_ANSWER: usize = 4;
 /// Answers of the BIOS to a frame: success, wrong checksum, unknown command, time-out.

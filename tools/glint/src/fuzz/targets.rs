@@ -168,8 +168,8 @@ impl Target {
     }
 }
 
-/// A file that an OBJ or glTF file names: a picture if its extension is that of a picture,
-/// otherwise the input.
+/// A file that an OBJ or glTF file names: a picture if the name has the extension of a
+/// picture, otherwise the input.
 fn beside(name: &str, input: &[u8]) -> Vec<u8> {
     if name.ends_with(".png") {
         example::small_png()

@@ -40,7 +40,7 @@ pub fn commands(
     mesh: &str,
     object: impl Fn(usize) -> String,
 ) -> Result<Vec<String>, InputError> {
-    // The size at the start, and with it the samples, depend on the board: `scene_of` states the samples.
+    // A board has its own initial size and number of samples. Therefore the commands set both: the size below, the samples in `scene_of`.
     let start = Scene::new(Defaults {
         size: frame.size,
         ..Defaults::GATEWARE

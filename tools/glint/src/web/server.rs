@@ -171,7 +171,7 @@ fn accept(stream: TcpStream, shared: &Arc<Shared>) {
     });
 }
 
-/// The list in a mutex. A thread that panics leaves a valid list.
+/// Locks the list, even if a thread has panicked with the lock: every change leaves a valid list.
 fn lock(strangers: &Mutex<Strangers>) -> MutexGuard<'_, Strangers> {
     strangers.lock().unwrap_or_else(PoisonError::into_inner)
 }

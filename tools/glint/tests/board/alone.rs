@@ -127,13 +127,21 @@ fn buttons_choose_scenes_and_hold_them() {
     press(&mut board, 1);
     press(&mut board, 1);
     press(&mut board, 1);
-    assert_eq!(turn(&mut board).0, 5, "before the first one comes the last");
+    assert_eq!(
+        turn(&mut board).0,
+        5,
+        "the scene before the first is the last"
+    );
     press(&mut board, 2);
     assert!(turn(&mut board).1.contains("demo held\r\n"));
     board.run(2 * TURN_MS * MS);
     assert_eq!(turn(&mut board).0, 5);
     press(&mut board, 1);
-    assert_eq!(turn(&mut board).0, 4, "a held demo moves by buttons");
+    assert_eq!(
+        turn(&mut board).0,
+        4,
+        "buttons change the scene of a held demo"
+    );
     // The motion sensor steers the camera in this scene, so button 2 calibrates it.
     press(&mut board, 2);
     assert!(turn(&mut board).1.contains("demo held\r\n"));

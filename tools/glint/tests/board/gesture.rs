@@ -148,7 +148,7 @@ fn the_camera_follows_the_hand() {
     let mut worst = [0.0_f64; 3];
     let films = std::env::var_os("GLINT_UPDATE").is_some();
     let mut film = Vec::new();
-    // The hand moves along half of the path, and for the animation along the whole path.
+    // The hand moves along half of the path; if an animation is recorded, along the whole path.
     for step in 0..if films { 19 } else { 10 } {
         if films {
             film.push(Image {

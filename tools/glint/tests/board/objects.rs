@@ -31,8 +31,8 @@ fn objects_are_the_models() {
     assert_eq!(found, expected);
 }
 
-/// Uploads are stored one after another. A refused upload does not change the others, and `unload` closes the gap between the
-/// others.
+/// Uploads are stored one after another. A refused upload does not change the stored uploads, and `unload` moves the later
+/// uploads into the gap.
 #[test]
 fn meshes_have_names_and_share_the_memory() {
     let [a, b, c] = ["cube", "icosphere:1", "icosphere:2"].map(mesh);

@@ -40,8 +40,8 @@ fn check<B: Board>(
     found.stats
 }
 
-/// Meshes flat, smooth, cut at the guard band, with edges, before a sky and in fog; objects, fields, a mesh in a field, and two eyes; by
-/// the gateware in quarters and whole, and by the soft core.
+/// Draws all kinds of frames: a mesh with flat and smooth shading, clipped, with edges, before a sky and in fog; objects; fields, alone and
+/// with a mesh; and two eyes. The gateware draws the frames in quarters and whole, and the soft core draws them too.
 #[test]
 fn averages_are_the_models() {
     let mut board = emulator();
@@ -106,8 +106,8 @@ fn averages_are_the_models() {
     check(&mut renderer, Backend::Cpu, &gateware[0], "in quarters");
 }
 
-/// The verilated SoC draws a mesh in quarters before a sky, and a field. A quarter follows the one before it at once, also if it has no
-/// geometry pass.
+/// The verilated SoC draws a mesh in quarters before a sky, and a field. Each quarter starts directly after the previous
+/// quarter, also if it has no geometry pass.
 #[test]
 fn the_soc_averages() {
     let mut board = running_board();

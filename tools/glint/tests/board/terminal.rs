@@ -93,10 +93,10 @@ impl Terminal {
             match self.output.recv_timeout(Duration::from_secs(1)) {
                 Ok(bytes) => self.seen.push_str(&String::from_utf8_lossy(&bytes)),
                 Err(RecvTimeoutError::Timeout) => {
-                    assert!(!is_over(), "no {wanted:?}; it printed {:?}", self.seen);
+                    assert!(!is_over(), "expected {wanted:?}, found {:?}", self.seen);
                 }
                 Err(RecvTimeoutError::Disconnected) => {
-                    panic!("it ended without {wanted:?}: {:?}", self.seen)
+                    panic!("the program ended without {wanted:?}: {:?}", self.seen)
                 }
             }
         }

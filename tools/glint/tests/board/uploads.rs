@@ -137,7 +137,7 @@ fn most_triangles(capability: Shading, most: u32) {
     let expected =
         format!("mesh of {found} triangles: expected at most {most}, which this board can draw");
     assert_eq!(refused.to_string(), expected);
-    // A host that does not check the limit is refused by the board.
+    // If the host does not check the limit, the board refuses the mesh.
     let console = renderer.console();
     transfer::stage(console, &large).unwrap();
     let Manifest { length, crc32 } = Manifest::of(&large);
@@ -218,8 +218,8 @@ fn texture(colour: u16) -> Vec<u8> {
     texture.unwrap()
 }
 
-/// A texture has a name beside those of meshes. It replaces the textures of the shown meshes until another is selected, or until it is
-/// removed.
+/// Uploads textures under names. The selected texture replaces the textures of the shown meshes until another texture is selected, or
+/// until it is removed.
 #[test]
 fn a_texture_is_uploaded_under_a_name() {
     let mut board = emulator();
@@ -265,7 +265,8 @@ fn a_texture_is_uploaded_under_a_name() {
     ] {
         assert!(models.contains(line), "{models}");
     }
-    // A texture is no mesh, and the other way around.
+    // A command for meshes does not accept the name of a texture, and a command for textures does not accept the name
+    // of a mesh.
     for (line, error) in [
         ("scene red", "scene `red`: expected cube or "),
         ("object add red", "object add `red`: expected a mesh"),
@@ -281,7 +282,7 @@ fn a_texture_is_uploaded_under_a_name() {
         let found = said(&mut console, line);
         assert!(found.contains(error), "{found}");
     }
-    // Bytes that are no texture keep the picture.
+    // An invalid texture is refused, and the picture stays.
     let good = texture(0xFFFF);
     let long = [&good[..], &[0; 16]].concat();
     let mut damaged = good.clone();
@@ -309,20 +310,21 @@ fn a_texture_is_uploaded_under_a_name() {
     assert_eq!(said(&mut console, "texture"), "texture green");
     assert!(frame(&mut console) == green);
 
-    // The removal of another upload moves the shown one.
+    // The removal of another upload moves the shown texture in memory.
     console.command("unload red").unwrap();
     assert!(frame(&mut console) == green);
     console.command("unload green").unwrap();
     assert_eq!(said(&mut console, "texture"), "texture own");
     assert!(frame(&mut console) == own);
-    // A texture with the name of the shown built-in mesh is another thing.
+    // A texture can have the name of a built-in mesh, even of the shown mesh.
     upload(&mut console, &texture(0xFFFF), "crate").unwrap();
     assert!(frame(&mut console) != own);
     console.command("unload crate").unwrap();
     assert!(frame(&mut console) == own);
 }
 
-/// An upload replaces one of the other kind with its name, unless an object uses it. The scene then shows the cube, or the own textures.
+/// A mesh replaces a texture with the same name, and a texture replaces a mesh, unless an object uses the mesh. The scene then shows the
+/// cube, or the own textures of the meshes.
 #[test]
 fn an_upload_replaces_one_of_the_other_kind() {
     let mut board = emulator();

@@ -38,7 +38,7 @@ fn compare<S: Simulation>(
     );
 }
 
-/// Meshes, edges, objects, fields, a mesh in a field and two eyes, by the gateware and by the soft core.
+/// Draws meshes, edges, objects, fields, a mesh in a field, and two eyes, by the gateware and by the soft core.
 #[test]
 fn windows_are_the_models() {
     let mut board = emulator();
@@ -88,7 +88,7 @@ fn windows_are_the_models() {
     }
 }
 
-/// A mesh and a field on the verilated SoC.
+/// Draws a mesh and a field on the verilated SoC.
 #[test]
 fn the_soc_draws_windows() {
     let mut board = running_board();

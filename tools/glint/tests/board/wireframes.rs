@@ -215,7 +215,7 @@ fn a_script_of_keys() {
     assert_eq!((counts.segments, counts.lines), (12, 12));
 }
 
-/// Repeated frames of a wireframe have no sky and no fog, which the frames of a mesh before them had.
+/// Repeated frames of a wireframe have no sky and no fog, although the previous frames, of a mesh, had both.
 #[test]
 fn repeated_frames_after_a_sky() {
     let mut board = emulator();

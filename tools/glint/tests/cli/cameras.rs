@@ -78,13 +78,15 @@ fn projections() {
     );
     assert_ne!(picture("--fov 90 --near 1.75"), whole);
 
-    // Square fields of view make pixels of 16:9, and the picture's middle is where the sides say.
+    // Equal fields of view in both directions give pixels with an aspect ratio of 16:9. The sides of the volume determine the middle of the
+    // picture.
     let [[top, bottom], [left, right]] = extent(&picture("--fov 90,90"));
     let (high, wide) = (bottom + 1 - top, right + 1 - left);
     assert!((16 * high).abs_diff(9 * wide) <= 16, "{wide} x {high}");
     let aside = "--projection orthographic,-0.5,1.5,-1.25,0.75,0.25";
     let [[top, bottom], [left, right]] = extent(&picture(aside));
-    // A sphere of radius 1/2 about 0: of the width 80 pixels from 0, of the height 45 from 3/4 · 90.
+    // A unit has 160 pixels horizontally and 90 vertically. The centre of the sphere, of radius 1/2, is 0.5 units from the left side and
+    // 0.75 units from the upper side.
     assert!(left <= 1 && right.abs_diff(159) <= 1, "{left} to {right}");
     assert!(
         top.abs_diff(22) <= 1 && bottom.abs_diff(112) <= 1,
@@ -106,7 +108,7 @@ fn projections() {
         ),
         (
             "--scene holoforge --projection perspective,-1,1,-1,1,0.5,9",
-            "expected no far plane beside --scene",
+            "expected no far plane with --scene",
         ),
         (
             "--field box:1,1,1 --projection orthographic,-1,1,-1,1,0.5",

@@ -185,7 +185,7 @@ fn textures_where_a_model_is_taken() {
         assert_eq!(json["textures"][0]["colours"], 16, "{command}");
         assert_eq!(line_of(&run("--no-textures")), None, "{command}");
     }
-    // The picture equals that of the converted mesh. A mesh in a board's memory layout keeps its
+    // The picture equals the picture of the converted mesh. A mesh in a board's memory layout keeps its
     // texture unless an option is given.
     let picture = |arguments: &str| {
         let command = format!("render {arguments} --up y --out p.png");

@@ -27,7 +27,7 @@ fn both_forms_of_a_program() {
         text,
         "eye 0 0 4\nplane 2\nwindow -2 -1.125 2 1.125\nsegment -1 0 1 1 0 1\nsegment 0 -1 1 0 1 1\nend\n"
     );
-    // What follows the end is ignored.
+    // Data after the end of the program are ignored.
     std::fs::write(folder.join("c.wft"), format!("{PROGRAM}no instruction\n")).unwrap();
     std::fs::write(folder.join("d.wfb"), [&read("a.wfb")[..], b"more"].concat()).unwrap();
     for (longer, to) in [("c.wft", "c.wfb"), ("d.wfb", "e.wfb")] {

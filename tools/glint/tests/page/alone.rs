@@ -18,7 +18,7 @@ pub struct Files {
 }
 
 impl Files {
-    /// Serves the page.
+    /// Starts the web server.
     pub fn start() -> Self {
         let board = Path::new(FOLDER).join("board.wasm");
         assert!(board.exists(), "run `cargo xtask web`");

@@ -1,5 +1,5 @@
-//! For every button that shows a scene, a mesh or a field, the commands succeed, and the picture is
-//! not of one colour.
+//! For every button that shows a scene, a mesh or a field, the commands succeed, and the picture
+//! has more than one colour.
 
 use crate::alone::Files;
 use crate::browser::{Browser, Page};
@@ -94,7 +94,7 @@ fn press_all(url: &str) {
         }
     }
 
-    // A moving field moves until another choice or a command.
+    // A moving field moves until another choice is made or a command is entered.
     let moving = "[...document.querySelectorAll('#fields button')].find(({ textContent }) => textContent === 'moving')";
     browser.evaluate(&page, &format!("{moving}.click()"));
     let number = "Number(document.getElementById('monitor').dataset.number)";

@@ -85,7 +85,7 @@ impl Drop for Served {
 pub fn wait_for(socket: &mut WebSocket<TcpStream>, wanted: &str) -> String {
     let end = Instant::now() + 3 * PATIENCE;
     loop {
-        assert!(Instant::now() < end, "{wanted} has not come");
+        assert!(Instant::now() < end, "{wanted} has not arrived");
         if let Message::Text(text) = socket.read().unwrap()
             && text.contains(wanted)
         {

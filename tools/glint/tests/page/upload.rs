@@ -1,5 +1,5 @@
-//! The picture of a model that is dropped on the page equals that of `glint render`, whatever the
-//! page has shown before.
+//! The picture of a model that is dropped on the page equals the picture of `glint render`,
+//! whatever the page has shown before.
 
 use crate::browser::{Browser, Page};
 use crate::page::wait_for_pixels;
@@ -310,7 +310,7 @@ fn the_model_of_the_first_steps_can_be_dropped() {
     wait_for_pixels(&mut browser, &page, &replaced);
 }
 
-/// `glint upload` shows the whole mesh too, or keeps the scene.
+/// `glint upload` shows the whole mesh, like the page; with `--keep-scene` it keeps the scene.
 #[test]
 fn glint_upload_shows_the_whole_mesh() {
     let port = Served::start_with("page-upload-port", &[]);
