@@ -2,11 +2,12 @@
 //
 //   group ─▶ asks the band buffer ─▶ answer: lanes that pass ─▶ one lane per clock ─▶ source, behind ─▶ blend ─▶ pixel
 //
-// A group with `in_blend` 0 passes as it is. Any other group goes to the band buffer once, with `out_asks`. The answer names the lanes that
-// pass the depth test. Then each of these pixels is blended, and leaves as a group of one pixel, with `out_blended`, in a clock in which the
-// band buffer takes it. `lane` selects the colour `behind`, which arrives a clock later. The group itself is taken in the clock of the last
-// pixel, or, without a pixel, two clocks after the answer. What else belongs to a group does not pass through this module. Throughput: a
-// group of n pixels that pass takes n + 8 clocks, from its first clock to that of the next group; one without a pixel that passes takes 9.
+// A group with `in_blend` 0 passes unchanged. Any other group is first sent to the band buffer with `out_asks` high. The answer is the mask
+// of the lanes that pass the depth test. Each pixel of these lanes is then blended, and sent as a group of one pixel, with `out_blended`
+// high; the band buffer always accepts it. `lane` selects the colour `behind`, which arrives one clock later. The group itself is taken in
+// the clock of its last pixel, or, if no lane passes, two clocks after the answer. The other fields of a group do not pass through this
+// module. Throughput: a group of which n pixels pass takes n + 8 clocks, from its first clock to the first clock of the next group; a group
+// of which no pixel passes takes 9.
 
 `default_nettype none
 
@@ -15,7 +16,7 @@ module texture_blend (
     input  wire              rst,
     input  wire              in_valid,
     output logic             in_ready,
-    // 1 to 7 eighths of the group's colours; from 8 on, the sum of both colours.
+    // 1 to 7: opacity of the group in eighths. 8 and above: the sum of both colours.
     input  wire  [3:0]       in_blend,
     input  wire  [7:0]       in_mask,
     input  wire  [7:0][15:0] in_colours,
@@ -30,7 +31,7 @@ module texture_blend (
     output logic [2:0]       lane,
     input  wire  [15:0]      behind
 );
-    // The blended pixel, valid for one clock. `gone` is high in the clock of the last one.
+    // The blended pixel, valid for one clock. `gone` is high in the clock of the group's last pixel.
     logic        is_blended, asks, gone, pixel_valid;
     logic [7:0]  pixel_mask;
     logic [15:0] pixel_colour;
@@ -46,7 +47,7 @@ module texture_blend (
     typedef enum logic [1:0] {ASK, ANSWER, PICK, END} state_t;
     state_t state;
 
-    // Lanes that are still to be picked, the lowest of them, and whether there is no other.
+    // The lanes that are not picked yet, the lowest of these lanes, and whether at most one lane is left.
     logic [7:0] left, lowest;
     logic       is_last;
 
@@ -64,7 +65,7 @@ module texture_blend (
     logic        picked_valid, picked_last;
     logic [7:0]  picked;
     logic [15:0] source;
-    // `keep` holds the selections of four lanes apart, which are one LUT for each bit.
+    // `keep` prevents synthesis from merging the two selections: the selection of one of four lanes takes one LUT per bit.
     (* keep *) logic [1:0][15:0] colours;
 
     for (genvar half = 0; half < 2; half++) begin : halves
@@ -97,8 +98,8 @@ module texture_blend (
         end
     end
 
-    // Blue, green and red. Each bit of the share selects one of the two colours; the eighths are the sum of these, and of one more eighth of
-    // the colour behind.
+    // Blue, green and red. Each bit of the opacity selects one of the two colours, with the weight of the bit. The sum of these terms, and
+    // of the colour behind once more, is the blended colour in eighths.
     for (genvar channel = 0; channel < 3; channel++) begin : channels
         localparam int unsigned LOW  = channel == 0 ? 0 : channel == 1 ? 5 : 11;
         localparam int unsigned BITS = channel == 1 ? 6 : 5;

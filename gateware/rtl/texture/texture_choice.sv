@@ -1,16 +1,18 @@
-// Divides items into steps: the pixels of a step need blocks of at most two neighbouring columns and two neighbouring rows of blocks, an
-// even and an odd one of each, so that every class of blocks is looked up once.
+// Divides items into steps. The pixels of a step need blocks in at most two neighbouring block columns and two neighbouring block rows, one
+// even and one odd of each, so a step looks up at most one block of each class.
 //
 //   item ─▶ which slots are in the same block column or row ─▶ FIFO ─▶ first pixels that fit together ─▶ step
 //                                                                            ▲       │ the others
 //                                                                            └───────┘
 //
-// The first pixel that waits is always in the step: so is every other one whose slots are all in the column and row of the first slot with
-// their parity. A step goes in each clock with `step_room` while there are items. Latency 2 clocks, throughput a step a clock.
+// The first waiting pixel is always in the step. Any other waiting pixel is in the step if each of its slots is in the same block column
+// and block row as the first waiting slot of equal parity. While items are waiting, a step is sent in each clock with `step_room`. Latency
+// 2 clocks, throughput one step per clock.
 //
-// Items come from a pipeline that cannot be stopped. As in credit_fifo, `sent` is high for a clock for each item that enters the pipeline,
-// and the pipeline takes at most 28 clocks if it is not to wait for credits. The first of two items in neighbouring clocks enters while
-// `credit` is high, and the second one in any case. `busy` is high while an item is in the pipeline or here.
+// Items come from a pipeline that cannot be stopped. As in credit_fifo, `sent` is high for one clock for each item that enters the
+// pipeline. A pipeline of more than 28 clocks would have to wait for credits. The first of two items in successive clocks
+// enters only while `credit` is high, the second item even if `credit` is low. `busy` is high while an item is in the pipeline or in this
+// module.
 
 `default_nettype none
 
@@ -27,7 +29,7 @@ module texture_choice (
     input  wire                    step_room,
     output logic                   out_valid,
     output texture_pkg::step_t     out_step,
-    // The slots of the step: their columns and rows without the lowest two bits.
+    // Columns and rows of the step's slots, without their lowest two bits.
     output logic [1:0][3:0][7:0]   out_places,
     output logic [3:0]             out_level
 );
@@ -35,7 +37,8 @@ module texture_choice (
 
     // A block has four or eight columns, and four or eight rows.
     logic [1:0]      wide;
-    // Axis, slot; pairs of slots in the order 01, 02, 12, 03, 13, 23: different blocks in spite of the same parity; same block.
+    // Indices: axis, then the slot, or the pair of slots in the order 01, 02, 12, 03, 13, 23. `differ`: both slots of a pair have the same
+    // parity, but are in different block columns or rows. `same`: they are in the same block column or row.
     logic [1:0][3:0] parity, item_parity;
     logic [1:0][5:0] differ, same, item_differ;
     logic [1:0][2:0] item_same;   // 02, 03, 13
@@ -61,7 +64,8 @@ module texture_choice (
         end
     end
 
-    // What a choice needs is in the FIFO's output register; everything else is read from LUT memory.
+    // The fields that determine the pixels of a step are in the output register of the FIFO `fits`; the other fields are read from LUT
+    // memory.
     localparam int unsigned FITS_BITS = 4 + 2 * (4 + 6 + 3);
 
     logic               ends, item_valid, items_room, fits_room, fits_valid, more;
@@ -78,7 +82,7 @@ module texture_choice (
         .out_valid(fits_valid), .out_ready(ends), .out_data({mask, item_parity, item_differ, item_same})
     );
 
-    // Free places for items, of which a quad may take two.
+    // Number of free FIFO entries. `credit` requires two free entries, because a quad may consist of two items.
     typedef logic [$clog2(ITEMS + 1)-1:0] count_t;
     count_t credits;
 
@@ -98,7 +102,7 @@ module texture_choice (
     assign left      = waiting & ~served;
     assign ends      = out_valid && left == '0;
 
-    // Whether the slots of pixels that wait fit to the first one of their parity, on an axis.
+    // For each axis and slot: whether the slot is in the same block column or row as the first waiting slot of equal parity.
     logic [2:0]      slots;
     logic [1:0][3:1] fit;
 

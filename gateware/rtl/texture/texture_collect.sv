@@ -2,15 +2,16 @@
 //
 //   step ─▶ memory of each lane ─▶ output register ─▶ group
 //
-// The colours of a step go to the place of the group that is being collected; `in_last` ends the group. The steps come from a pipeline that
-// cannot be stopped, and whose start sends them only while `room` is high. FLIGHT is the most steps that come after the clock before
-// `room` falls. Output: a valid/ready stream. `out_opaque` has the lanes of all steps of the group that are not transparent; the colours
-// of other lanes have no meaning. `in_blend` is stored with the last step. Latency 2 clocks from the last step, throughput a group a clock.
+// The colours of a step are written to the entry of the group that is being collected; `in_last` ends the group. The steps come from a
+// pipeline that cannot be stopped; its start sends steps only while `room` is high. FLIGHT is the maximum number of steps that still arrive
+// from the clock in which `room` falls. Output: a valid/ready stream. `out_opaque` is the mask of the lanes that are in a step of the group
+// and not transparent; the colours of other lanes are undefined. `in_blend` is stored with the last step. Latency 2 clocks from the last
+// step, throughput one group per clock.
 
 `default_nettype none
 
 module texture_collect #(
-    // Groups, a power of two.
+    // Capacity in groups, a power of two.
     parameter int unsigned DEPTH  = 32,
     parameter int unsigned FLIGHT = 20,
     // Width of a colour.
@@ -20,7 +21,7 @@ module texture_collect #(
     input  wire              rst,
     output logic             room,
     input  wire              in_valid,
-    input  wire  [3:0]       in_mask,    // lanes of the half
+    input  wire  [3:0]       in_mask,    // lanes of the step in its half
     input  wire              in_half,
     input  wire              in_last,
     input  wire  [3:0]       in_opaque,

@@ -1,9 +1,9 @@
-// Asks memory for the blocks that are missing in the cache, two words of each.
+// Requests from memory the blocks that are missing in the cache, two words for each block.
 //
 //   blocks ─▶ FIFO ─▶ one after another ─▶ number in the level ─▶ + first block of the level ─▶ FIFO ─▶ ask
 //
-// The blocks of a step are asked for in the order of their classes. Latency 7 clocks, throughput a word a clock. The FIFO of blocks has
-// room for STEPS steps; the source sees to it that there are no more.
+// The blocks of a step are requested in the order of their classes. Latency 7 clocks, throughput one word per clock. The FIFO of blocks
+// holds STEPS steps; the source must not send more.
 
 `default_nettype none
 
@@ -27,18 +27,19 @@ module texture_fetch #(
     output logic [ADDRESS_BITS-1:0] ask_addr
 );
     localparam int unsigned ADDRESSES = 16;
-    // Clocks from a word that is chosen to its address.
+    // Number of clocks from the choice of a word to its address.
     localparam int unsigned FLIGHT    = 2;
 
     (* ram_style = "distributed" *) logic [ADDRESS_BITS-1:0] firsts [0:15];
 
     always_ff @(posedge clk) if (level_write) firsts[level_number] <= level_first;
 
-    // The lowest class of those that are left is next.
+    // The lowest remaining class is requested next.
     logic                 step_valid, step_room, step_gone, room, sends, second;
     logic [3:0]           missed, done, left, next, level;
 
-    // The places lack their lowest bit, which is the parity or is not used. A step thus has 36 bits, the width of half a block RAM.
+    // The places are stored without their lowest bit, which is the parity or is not used. A step therefore has 36 bits, the width of half a
+    // block RAM.
     logic [1:0][1:0][7:1] in_places, places;
 
     for (genvar axis = 0; axis < 2; axis++) begin : shortened
@@ -68,7 +69,7 @@ module texture_fetch #(
         end
     end
 
-    // The block, then its number: the columns of a level's blocks are a power of two.
+    // The column and the row of the block, then its number in the level. A level has a power of two of block columns, so a shift suffices.
     logic                    chosen_valid, placed_valid, chosen_second, placed_second, unused_idle;
     logic [7:0]              chosen_column, chosen_row;
     logic [7:1]              column, row;

@@ -1,20 +1,20 @@
-// Makes colours of the texels of a step: averages neighbours, and multiplies by the light.
+// Computes colours from the texels of a step: averages neighbours, and multiplies by the light.
 //
 //   clock  0                       5       6
 //   neighbours, texels of 0, 1 ─▶ texture_lerp ─▶ texture_light ─▶ lanes 0 and 1; bilinear: or 2 and 3
 //   texels of 2, 3 ─────────────▶ delay ────────▶ texture_light ─▶ nearest: lanes 2 and 3
 //                                 light ────────▶
 //
-// A step of a nearest texture has a texel for each of four lanes, one of a bilinear texture has the neighbours of the lanes 0 and 1, or 2
-// and 3. Two lerps therefore serve both kinds of texture.
+// With nearest filtering, a step contains one texel for each of four lanes. With bilinear filtering, a step contains the four neighbours of
+// each of two lanes: 0 and 1, or 2 and 3. Two instances of texture_lerp therefore suffice for both kinds of filtering.
 //
-// Without FRACTIONS colours are rounded to RGB565, with `dither` by the place of the pixel. With FRACTIONS they have the format of
-// colour_pkg::rounded.
+// Without FRACTIONS, colours are rounded to RGB565; with `dither`, the threshold depends on the position of the pixel. With FRACTIONS,
+// colours have the format of the input of colour_pkg::rounded.
 //
-// `in_bilinear` and `dither` must be constant while steps are inside. `light` and `line`, the lowest bits of the
-// picture's line, belong to the step of LIGHT clocks before. The
-// colours come FILTER clocks after their step; those of lanes without a bit in `out_mask` have no meaning. Throughput one step per clock;
-// the pipeline cannot be stopped, and what follows always has room.
+// `in_bilinear` and `dither` must be constant while steps are inside. `light`, and `line`, the lowest bits of the number of the picture's
+// line, belong to the step that entered LIGHT clocks earlier. Colours are output FILTER clocks after their step; the colours of lanes
+// outside of `out_mask` are undefined. Throughput one step per clock; the pipeline cannot be stopped, and its consumer must always be
+// ready.
 
 `default_nettype none
 
@@ -66,10 +66,10 @@ module texture_filter #(
         );
     end
 
-    // As long as a lerp.
+    // The latency of texture_lerp.
     delay #(.WIDTH(32), .CLOCKS(6)) late_delay (.clk, .enable(1'b1), .in(in_texels[3:2]), .out(late));
 
-    // The thresholds of the lanes, for bilinear textures those of the two pixels, in the clock in which texture_light adds them.
+    // The thresholds of the four lanes, or with bilinear filtering of the two pixels, in the clock in which texture_light adds them.
     logic [3:0][2:0] thresholds_8;
     logic [1:0]      line_7;
     logic            second_7;
@@ -85,7 +85,7 @@ module texture_filter #(
         localparam int unsigned BITS = k == 1 ? 6 : 5;
         localparam int unsigned LOW  = k == 0 ? 11 : k == 1 ? 5 : 0;
         localparam int unsigned REST = 8 - BITS;
-        // Place of the channel in a colour.
+        // Lowest bit of the channel in a colour.
         localparam int unsigned AT   = FRACTIONS ? 8 * k : LOW;
         localparam int unsigned SIZE = FRACTIONS ? 8 : BITS;
 

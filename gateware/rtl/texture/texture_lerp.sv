@@ -1,18 +1,18 @@
-// Averages the four neighbours of a pixel by its weights: three channels side by side in four DSP48.
+// Computes the weighted average of a pixel's four neighbours: three channels side by side in four DSP48.
 //
 //   clock  0             1            2          3             4            5          6
 //          first, last ─▶ difference ─▶ product ─▶ above ──────▶ difference ─▶ product ─▶ red and green
 //          first, last ─▶ difference ─▶ product ─▶ below ──────▶ difference ─▶ product ─▶ blue
 //          across                                               down
 //
-// `above` is 16·first + (last − first)·across of the two upper neighbours, `below` the same of the lower ones, and the average is 16·above
-// + (below − above)·down. A difference holds the channels side by side, with free bits between them for their products. The sum of each
-// channel is not negative, so no channel borrows from the next one, although a difference may be negative. Half of the unit of the
-// rounding is already in `above` and `below`, in bits that are free in 16·first. Without `bilinear`, which is constant while pixels are
-// inside, the average is `nearest`.
+// `above` is 16·first + (last − first)·across for the two upper neighbours, `below` is the same for the two lower neighbours, and the
+// average is 16·above + (below − above)·down. A difference holds the channels side by side, with free bits between them for their products.
+// The sum of each channel is not negative, so no channel borrows from the next channel, although a difference may be negative. `above` and
+// `below` already include half a unit for the rounding, in bits that are 0 in 16·first. Without `bilinear`, which is constant while pixels
+// are inside, the average is `nearest`.
 //
-// Output: eight bits of each channel, its integer part and fraction bits, to nearest. Latency 6 clocks, throughput one pixel per clock; the
-// pipeline cannot be stopped.
+// Output: eight bits of each channel, its integer part and fraction bits, rounded to nearest. Latency 6 clocks, throughput one pixel per
+// clock; the pipeline cannot be stopped.
 
 `default_nettype none
 
@@ -24,17 +24,17 @@ module texture_lerp (
     input  wire  [1:0][3:0]  weights,    // across, down; u0.4
     output logic [2:0][7:0]  texel       // red in the lowest bits
 );
-    // Blue, red and green from the lowest bit, with four bits above each but the last one.
+    // Blue, red and green, from the lowest bits, with four 0 bits above blue and above red.
     function automatic logic [23:0] packed_colour(input logic [15:0] colour);
         packed_colour = {colour[10:5], 4'd0, colour[15:11], 4'd0, colour[4:0]};
     endfunction
 
-    // 16 times a colour, with half of the unit of the rounding divided by 16: 2^(bits − 1)/16 for a channel of 5 or 6 bits.
+    // 16 times a colour, plus 1/16 of half a unit for the rounding: 2^(bits − 1)/16 for a channel of 5 or 6 bits.
     function automatic logic [27:0] scaled(input logic [15:0] colour);
         scaled = {colour[10:5], 4'd2, colour[15:11], 4'd1, colour[4:0], 4'd1};
     endfunction
 
-    // The upper neighbours, and the lower ones.
+    // The averages of the two upper neighbours and of the two lower neighbours.
     logic        [1:0][27:0] sums;
 
     for (genvar i = 0; i < 2; i++) begin : rows
@@ -60,7 +60,7 @@ module texture_lerp (
         wire _unused = &{1'b0, product[29:28]};
     end
 
-    // The average of both rows. Green is above red.
+    // The average of both rows. Green is in the bits above red.
     logic        [3:0]       down;
     logic signed [4:0]       weight;
     logic signed [23:0]      difference;

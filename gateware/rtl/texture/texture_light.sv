@@ -4,10 +4,10 @@
 //   light ─▶ share ──┐
 //           texels ──┴▶ one DSP48: both ────▶ colours
 //
-// The light is u0.8, and full light is 248, or 252 in a channel of 6 bits. It stands for a share of 256, light + nearest(light/(2^CHANNEL −
-// 1)), which is 256 for full light. One factor has both texels side by side, and their products with the share have 16 bits each, to which
-// thresholds for the rounding to CHANNEL bits are added, see colour_pkg::threshold. With FRACTIONS the colour keeps 8 bits. Above full
-// light, the product of the first texel may carry into the second one, and the colours have no meaning.
+// The light is u0.8; full light is 248, or 252 in a channel of 6 bits. The share, in 256ths, is light + nearest(light/(2^CHANNEL − 1)): 256
+// for full light. One factor has both texels side by side. Their products with the share have 16 bits each; to each product a threshold for
+// the rounding to CHANNEL bits is added, see colour_pkg::threshold. With FRACTIONS the colour keeps 8 bits. With more than full light, the
+// product of the first texel may carry into that of the second texel, and the colours are undefined.
 //
 // A texel has 8 bits, of which CHANNEL are its integer part. Its largest value is 2^8 − 2^(8 − CHANNEL). Latency 4 clocks from `light`, 3
 // clocks from `texels`; throughput two texels per clock; the pipeline cannot be stopped.
@@ -29,7 +29,7 @@ module texture_light #(
 );
     localparam int unsigned MOST = (1 << CHANNEL) - 1;
 
-    // The correction by the six highest bits of the light, which suffice.
+    // Table of nearest(light/(2^CHANNEL − 1)), without the two lowest bits of the light.
     function automatic logic [255:0] corrections();
         for (int i = 0; i < 64; i++) corrections[4*i +: 4] = 4'((8 * i + MOST) / (2 * MOST));
     endfunction
@@ -40,7 +40,7 @@ module texture_light #(
     logic signed [31:0] products;
     logic [1:0][15:0]   limits;
 
-    // With `dither`, half of the unit of the thresholds is added too, so that the mean over all pixels of a pattern is the product to
+    // With `dither`, half a unit of the thresholds is added too, so that the mean over all pixels of a pattern is the product, rounded to
     // nearest.
     always_comb
         for (int i = 0; i < 2; i++)

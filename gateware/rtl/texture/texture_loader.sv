@@ -1,16 +1,16 @@
-// Reads what precedes the texels of a texture in memory, header and palette (docs/formats/texture.md), and gives the places of the mip
-// levels.
+// Reads the header and the palette, which precede the texels of a texture in memory (docs/formats/texture.md), and outputs the addresses of
+// the mip levels.
 //
 //   start ─▶ entry of the table ─▶ second and first word of the header ─▶ levels, the last first ─▶ palette, from its end ─▶ done
 //
-// The table of the textures has entries of 32 bits, the addresses of the headers in bytes. One register, `address`, takes all of this way:
-// the field `length` leads from the header to the end of the texture, from there it goes back by the size of each level, which grows by
-// shifts, and then back through the palette.
+// The entries of the table of textures are the byte addresses of the headers, 32 bits each. All addresses are computed in one register,
+// `address`: the field `length` leads from the header to the end of the texture; from there `address` decreases by the size of each level,
+// which grows by shifts, and then through the palette.
 //
-// `number` and `table_base` hold from `start` to `done`, which are high for a clock; the next start comes after `done`. `sampler` holds
-// until the next start. Time: twice the latency of memory and 22 clocks, with a palette once more the latency and a clock per colour.
-// Memory may contain anything: sides and levels are limited to what has a number here, and other invalid values count as valid ones.
-// Memory: a client of read_port.
+// `start` and `done` are high for one clock each; the next start must follow `done`. `number` and `table_base` must hold from `start` to
+// `done`. `sampler` holds until the next start. Time: two latencies of memory and 22 clocks, and for a palette one more latency and one
+// clock per colour. Memory may contain any values: sides and numbers of levels are limited to the valid range, and any other invalid value
+// counts as a valid value. Memory: a client of read_port.
 
 `default_nettype none
 
@@ -31,7 +31,7 @@ module texture_loader #(
     output logic                    data_ready,
     input  wire  [127:0]            data,
     output texture_pkg::sampler_t   sampler,
-    // The first word of a level.
+    // Address of the first word of a level.
     output logic                    level_write,
     output logic [3:0]              level_number,
     output logic [ADDRESS_BITS-1:0] level_first,
@@ -45,7 +45,8 @@ module texture_loader #(
     localparam int unsigned BYTE_BITS = 4;
     // The largest level, 1024×1024 colours, has 2^17 words.
     localparam int unsigned SIZE_BITS = 18;
-    // Which 32 bits of its word are the header's field `length`: it shares the selection of an entry of the table.
+    // Index of the header's field `length` in its word, in units of 32 bits: the multiplexer for entries of the table also selects this
+    // field.
     localparam logic [1:0] LENGTH_ENTRY = 2'd1;
 
     typedef enum logic [3:0] {
@@ -54,31 +55,31 @@ module texture_loader #(
 
     state_t state;
 
-    // A word of the header, as both of its words.
+    // The word that was read, in place of both words of the header; the state determines which of them it is.
     records_pkg::texture_header_t header;
 
     assign header = {data, data};
 
-    // A number up to 10.
+    // Returns a value of at most 10 unchanged; a larger value becomes 8, 9 or 10.
     function automatic logic [3:0] limited(input logic [3:0] value);
         limited = {value[3], value[2] && !value[3], value[1], value[0] && !(value[3] && value[1])};
     endfunction
 
-    // 0, 1 or 2.
+    // Returns 0, 1 and 2 unchanged, and 2 for 3.
     function automatic logic [1:0] one_of_three(input logic [1:0] value);
         one_of_three = {value[1], value[0] && !value[1]};
     endfunction
 
     logic [ADDRESS_BITS-1:0] address;
-    // What the address is changed by, in words: the size of a level, 1, or a part of the number of the texture.
+    // Step of the address in words: the size of a level, 1, or the high bits of the texture's number.
     logic [SIZE_BITS-1:0]    size;
-    // Levels, or words of the palette to ask for, that follow this one.
+    // Number of levels, or of words of the palette to request, that follow the current one.
     logic [4:0]              count;
-    // Of the next colour of the palette.
+    // Index of the next colour of the palette.
     logic [7:0]              index;
     logic                    asks_more, is_level, asks, takes_colour;
     logic [1:0]              grows;
-    // Logarithm of the least side whose next larger level is larger than a block of 4 texels.
+    // Base-2 logarithm of the smallest side of a texture whose level `count` - 1 is larger than a block of 4 texels.
     logic [3:0]              least;
     logic [3:0][31:0]        entries;
     logic [31:0]             entry;
@@ -101,14 +102,14 @@ module texture_loader #(
             PALETTE:                        data_ready = index[2:0] == '0;
             default:                        data_ready = 1'b0;
         endcase
-        // Whether the next larger level has twice the blocks across, and down; blocks have 4 or 8 texels.
+        // Whether the next larger level has twice as many blocks across, and down; the sides of blocks have 4 or 8 texels.
         least    = count[3:0] + 4'd2;
         grows[0] = {least, 1'b0} < {sampler.side_log2[0], sampler.format == 2'd0};
         grows[1] = {least, 1'b0} < {sampler.side_log2[1], sampler.format != 2'd2};
     end
 
-    // The address is 0 before a base or an entry is added to it. The bit below it carries the 1 of a subtraction. `keep` holds the
-    // selections together that have a LUT for each bit of address and size.
+    // The address is 0 before the base or an entry of the table is added. The bit below the address adds the 1 of a subtraction. `keep`
+    // preserves these control signals, so that each bit of `address` and `size` takes one LUT.
     (* keep *) logic         back, adds_other, doubles, quadruples;
     logic                    clears, steps, unused_carry;
     logic [ADDRESS_BITS-1:0] change;
@@ -128,7 +129,7 @@ module texture_loader #(
             PALETTE:           steps = asks;
             default:           steps = 1'b0;
         endcase
-        // With `adds_other`, `back` distinguishes the base from an entry.
+        // With `adds_other`, `back` selects the base instead of an entry.
         unique case ({adds_other, back})
             2'b00: change = ADDRESS_BITS'(size);
             2'b01: change = ADDRESS_BITS'(size) ^ {ADDRESS_BITS{1'b1}};

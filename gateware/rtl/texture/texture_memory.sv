@@ -1,5 +1,5 @@
-// A quarter of a copy of the cache's blocks. Two ports read 16 bits each, or write half of `in` each. Latency 2 clocks: the second
-// one is for the output registers of the block RAM. A port that writes repeats its output.
+// One quarter of one copy of the cache's blocks. Two ports read 16 bits each, or write one half of `in` each. Latency 2 clocks, because the
+// block RAM has output registers. A port keeps its output while it writes.
 
 `default_nettype none
 
@@ -18,7 +18,7 @@ module texture_memory #(
 
     logic [15:0] first_read, second_read;
 
-    // A process for each port, as synthesis tools expect it; always_ff allows no other process with the same variable.
+    // One process for each port, as synthesis tools expect; always_ff would not allow two processes to write the same variable.
     always @(posedge clk) begin
         if (write) halves[first] <= in[15:0];
         else first_read <= halves[first];

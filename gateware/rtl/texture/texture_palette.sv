@@ -1,4 +1,4 @@
-// The colours of a palette, with two ports that read; the second one also fills it. Latency 1 clock.
+// The colours of a palette, with two read ports; the second port also writes. Latency 1 clock.
 
 `default_nettype none
 

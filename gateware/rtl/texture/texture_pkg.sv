@@ -12,7 +12,7 @@ package texture_pkg;
         logic            bilinear;
         logic            cut_out;
         logic [15:0]     key;        // value of a transparent texel, if `cut_out`
-        logic [3:0]      blend;      // 0 opaque; 1 to 7 eighths over the colours behind; from 8 on, the sum
+        logic [3:0]      blend;      // 0 opaque; 1 to 7 opacity in eighths; from 8 on, added to the colours behind
     } sampler_t;
 
     // Position of a pixel on an axis.
@@ -20,13 +20,14 @@ package texture_pkg;
         logic        below;    // below 0
         logic        past;     // at or above 1
         logic        odd;      // the number of the repeat is odd
-        logic [14:0] fraction; // of a repeat, u0.15, rounded down
+        logic [14:0] fraction; // position in the repeat, u0.15, rounded down
     } position_t;
 
-    // Four columns and four rows of texels that a pair or a quad of pixels needs, each called a slot. Of a nearest texture, slot i is the
-    // texel of pixel i. Of a bilinear one, slots 2j and 2j+1 are the neighbours u and u+1 of pixel j of a pair.
+    // An item: four columns and four rows of texels, the slots, which a quad of pixels or a pair of pixels needs. With nearest filtering,
+    // slot i is the texel of pixel i of a quad. With bilinear filtering, slots 2j and 2j+1 are the neighbours u and u+1 (or v and v+1) of
+    // pixel j of a pair.
     typedef struct packed {
-        logic [3:0]           mask;    // pixels that are covered; of a pair the lowest two
+        logic [3:0]           mask;    // covered pixels; of a pair, bits 0 and 1
         logic                 half;
         logic                 last;
         logic                 second;  // the pair of the quad's lanes 2 and 3
@@ -36,8 +37,8 @@ package texture_pkg;
         logic [1:0][3:0][9:0] texels;  // axis, slot
     } item_t;
 
-    // A step: pixels of an item whose texels are in two by two neighbouring blocks, and what reads them from the cache. x is a column and
-    // y a row within a block.
+    // A step: pixels of an item whose texels are in 2x2 neighbouring blocks, and the fields that select these texels in the cache. x is a
+    // column and y a row within a block.
     typedef struct packed {
         logic [3:0]           served;
         logic                 half;
@@ -50,7 +51,7 @@ package texture_pkg;
         logic [3:0][2:0]      y;
     } step_t;
 
-    // Blocks of a step: those with an even (0) and an odd (1) column, and those with an even and an odd row. A class of blocks has the
+    // The block columns and block rows of a step: the even one at index 0, the odd one at index 1. A class of blocks has the
     // number {parity of the row, parity of the column}.
     typedef struct packed {
         logic [3:0]           level;
@@ -62,7 +63,7 @@ package texture_pkg;
     // Clocks in texture_filter from a step to its light, and to its colours.
     localparam int unsigned LIGHT  = 5;
     localparam int unsigned FILTER = 9;
-    // Most steps that wait for their texels in the sampler's queue.
+    // Maximum number of steps that wait for their texels in the sampler's queue.
     localparam int unsigned STEPS  = 256;
     /* verilator lint_on UNUSEDPARAM */
 endpackage

@@ -1,7 +1,7 @@
 // Positions of pixels in a texture, and their mip level (docs/formats/texture.md, "On a triangle"), for four neighbouring pixels per clock.
 //
 // A quad is four neighbouring pixels, lanes 0 to 3 or 4 to 7 of a group of eight. The level of a group is that of its first covered pixel,
-// so the quads of a group follow each other, and the first one has the flag `first`.
+// so the quads of a group follow each other, and the first of them has the flag `first`.
 //
 //   clock    0 … 3          4, 5       6 … 9                10 … 12    13 … 15
 //   depth ─▶ four lanes ─▶ zeros ─▶ table, slope: 1/D ─┐
@@ -9,8 +9,8 @@
 //                                                               └─▶ σ of the first pixel ─▶ changes ─▶ magnitudes ─▶ level
 //   clock                                                           13, 14                  15 … 17    18 … 24
 //
-// Twelve multipliers divide, and four compute the changes that decide the level. Each lane has a table of inverses, half a RAMB36. Latency
-// 24 clocks, throughput one quad per clock; the pipeline cannot be stopped. `sampler` must hold while quads are inside.
+// Twelve multipliers are used for the divisions, and four for the changes that determine the level. Each lane has a table of inverses, half
+// a RAMB36. Latency 24 clocks, throughput one quad per clock; the pipeline cannot be stopped. `sampler` must hold while quads are inside.
 
 `default_nettype none
 
@@ -28,7 +28,7 @@ module texture_place (
     input  wire  [2:0][95:0] in_planes,
     input  wire              in_linear,    // orthographic projection: a constant replaces the depth
     input  wire  [1:0][3:0]  in_range,     // base-2 logarithm of the range of s and t, in repeats
-    input  wire  [1:0][3:0]  in_periods,   // what clamped coordinates are relative to, signed, in units of two repeats
+    input  wire  [1:0][3:0]  in_periods,   // base of clamped coordinates, signed, in units of two repeats
     output logic             out_valid,
     output logic [3:0]       out_mask,
     output logic             out_half,
@@ -38,7 +38,7 @@ module texture_place (
 );
     localparam int unsigned LATENCY = 24;
 
-    // Lanes: the accumulators at the quad's first pixel, then at the third one, then at the second and fourth ones.
+    // The accumulators in the lanes of the quad: first in lane 0, one clock later in lanes 0 and 2, then in all four.
     logic [2:0][31:0]      start_1, step_1, step_2;
     logic [2:0][1:0][31:0] two;
     logic [2:0][3:0][31:0] values;
@@ -63,7 +63,7 @@ module texture_place (
         wire _unused = &{1'b0, plane};
     end
 
-    // What belongs to a quad or to its triangle; the suffix of a name is the clock.
+    // Other fields of a quad or of its triangle; the suffix of a name is the signal's clock.
     logic [LATENCY:1] valid;
     logic [3:0]       mask_5, mask_12;
     logic [1:0]       lane_5, lane_12;
@@ -90,13 +90,13 @@ module texture_place (
     assign lane_5    = lowest(mask_5[2:0]);
     assign lane_12   = lowest(mask_12[2:0]);
 
-    // Returns the first covered lane. One lane is covered, so the mask of the others suffices.
+    // Returns the first covered lane. At least one of the four lanes is covered, so the mask of the first three suffices.
     function automatic logic [1:0] lowest(input logic [2:0] mask);
         lowest = mask[0] ? 2'd0 : mask[1] ? 2'd1 : mask[2] ? 2'd2 : 2'd3;
     endfunction
 
-    // Division by the depth. Entry i of the table has 2^20/(1 + i/512) + 2 to nearest, and how much the next entry is less, negated. The
-    // first entry is so much less that no inverse reaches 1.
+    // Division by the depth. Entry i of the table contains 2^20/(1 + i/512) + 2, rounded to nearest, and the negative difference to the
+    // next entry. The value of entry 0 is reduced to 2^20 - 1, so that every inverse is below 1.
     logic [3:0][3:0]       zeros_5;
     logic [3:0][2:0]       top_5;
     logic [1:0][3:0][41:0] shares;
@@ -192,7 +192,8 @@ module texture_place (
         wire _unused = &{1'b0, depth[1:0], inverse[31:28], inverse[10:0]};
     end
 
-    // Positions. A share times 2^shift has 41 fraction bits; five integer bits and 15 fraction bits stay, and whether higher bits are set.
+    // Positions. A share times 2^shift has 41 fraction bits. The results are five integer bits, 15 fraction bits, and whether higher bits
+    // are set.
     logic [1:0][3:0][17:0] positions;
 
     for (genvar axis = 0; axis < 2; axis++) begin : position_axes
@@ -243,8 +244,8 @@ module texture_place (
 
     wide_delay #(.WIDTH(8 * 18), .CLOCKS(LATENCY - 15)) positions_delay (.clk, .zero(1'b0), .in(positions), .out(out_positions));
 
-    // The mip level of the first pixel. The changes of a coordinate for a pixel to the right and down are G - σ·Gd, with the gradients G of
-    // the coordinate and Gd of the depth.
+    // The mip level of the first pixel. From a pixel to the next pixel to the right, or down, a coordinate changes by G - σ·Gd, where G is
+    // the gradient of the coordinate and Gd the gradient of the depth.
     logic [5:0][23:0] gradients;
     logic [1:0][23:0] depth_gradients; // at clock 14
     logic [3:0][23:0] gradients_16;    // of s and t
@@ -266,7 +267,7 @@ module texture_place (
     logic [1:0][8:0]       magnitudes;
 
     for (genvar axis = 0; axis < 2; axis++) begin : changes
-        // `keep` holds the selections of a lane and of a shift apart, which are one LUT for each bit alone.
+        // `keep` prevents synthesis from merging the selection of a lane with the selection of a shift: each takes one LUT per bit.
         (* keep *) logic [27:0] share;
         (* keep *) logic [1:0]  fours;
         logic [1:0]  ones, zeros_13;
@@ -303,7 +304,7 @@ module texture_place (
 
         for (genvar direction = 0; direction < 2; direction++) begin : directions
             logic [23:0]        gradient_16;
-            // As wide as the product, so that the DSP48's adder has its sign bit. The sum fits.
+            // As wide as the product, so that the adder of the DSP48 also computes the sign bit. The sum does not overflow.
             logic signed [41:0] change;
 
             assign gradient_16 = gradients_16[2 * axis + direction];
@@ -332,12 +333,13 @@ module texture_place (
             most      <= sizes[axis][1] > sizes[axis][0] ? sizes[axis][1] : sizes[axis][0];
             nibble_20 <= nibble;
             head_20   <= head;
-            // The number of the leading bit in texels times the depth, of which the lowest accumulator bit has number 0.
+            // The number of the magnitude's leading bit, in texels times the depth; the lowest bit of an accumulator has number 0.
             magnitudes[axis] <= {6'({nibble_20, 2'd3 - zeros_of_head}) + 6'd4 + 6'(range_20[axis]) + 6'(sampler.side_log2[axis]), head_part};
         end
     end
 
-    // Four leading bits of a number decide by how much the larger one of both magnitudes exceeds 1.5 times the depth.
+    // The level depends on the ratio of the larger magnitude to the depth, and changes at 1.5 times each power of two. The leading four
+    // bits of both numbers suffice to compare them.
     logic [6:0]        depth_5, depth_22;
     logic [8:0]        most_22;
     logic [3:0]        most_part, depth_part, level;

@@ -1,14 +1,15 @@
-// The queue of steps between tags and texels. At its head, the missed blocks of a step are filled, a word of memory a clock; then it
-// leaves and reads. So no block is replaced before the steps that were looked up earlier have read it, and each step finds its blocks.
+// The queue of steps between the tags and the texels. While a step is at the head, its missing blocks are filled, one memory word per
+// clock; then the step leaves the queue and reads its texels. No block is therefore replaced before all earlier steps have read it, and
+// each step finds its blocks.
 //
 //   step ───▶ block RAM ─┐
 //   places ─▶ block RAM ─┼──▶ head: fill clocks, then one that reads
 //   misses ─▶ FIFO ──────┘
 //
-// The parts of a step arrive at different times, each in the order of the steps. Its misses must not come before its other parts; then it is
-// in the queue. `room` is high while steps may come, and depends on the number of steps a clock ago. Latency from the misses 2 clocks,
-// throughput a step a clock. Outputs: in a clock with `fills` or `reads`, the step at the head. After `out_room` has fallen, at most two
-// steps leave: one at once, and the one that is being filled.
+// The parts of a step arrive at different times, each in the order of the steps. The misses of a step must not arrive before its other
+// parts; with them, the step is in the queue. `room` is high while steps may arrive, and depends on the number of steps one clock earlier.
+// Latency from the misses 2 clocks, throughput one step per clock. In a clock with `fills` or `reads`, the outputs are those of the step at
+// the head. After `out_room` has fallen, at most two steps leave: one at once, and the step that is being filled.
 
 `default_nettype none
 
@@ -25,7 +26,7 @@ module texture_queue #(
     input  wire  [3:0][6:0]      in_places,
     input  wire                  missed_valid,
     input  wire  [3:0]           in_missed,
-    // A word of memory comes with `data_valid`, and goes while `data_ready` is high.
+    // A word of memory moves in a clock in which `data_valid` and `data_ready` are high.
     input  wire                  data_valid,
     output logic                 data_ready,
     output logic                 fills,
@@ -40,7 +41,7 @@ module texture_queue #(
 
     typedef logic [INDEX_BITS:0] pointer_t;
 
-    // A step may come in the clock in which `room` is computed, and in the next one.
+    // A step may arrive in the clock in which `room` is computed, and in the next clock.
     localparam pointer_t MOST = pointer_t'(STEPS - 2);
 
     (* ram_style = "block", no_rw_check *) logic [$bits(in_step)-1:0] steps [0:STEPS-1];
@@ -69,7 +70,7 @@ module texture_queue #(
         end
     end
 
-    // Misses of the step at the head that are left to fill.
+    // Missing blocks of the step at the head that are not filled yet.
     logic       missed_room, next_valid, next_taken, ends;
     logic [3:0] next_missed, left;
 

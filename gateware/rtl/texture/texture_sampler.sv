@@ -5,18 +5,19 @@
 //                                                    │ misses       │
 //                                                    └─▶ texture_fetch ─▶ memory
 //
-// A quad is four neighbouring pixels of a row, at positions in the texture. A step has the texels of a part of its pixels. A quad of a
-// nearest texture takes one step while its pixels need at most two by two neighbouring blocks of 4x4 to 8x8 texels, a quad of a bilinear
-// texture two, one for each pair of lanes that has covered pixels. Together the steps of a quad serve each of its pixels once; steps come
-// in the order of the quads. The colours of memory are read as they are; `sampler` may have any value, and no value stops the unit.
+// A quad is four neighbouring pixels of a row, at positions in the texture. A step contains the texels of some of these pixels: pixels that
+// need at most 2x2 neighbouring blocks, which have 4x4 to 8x8 texels. With nearest filtering, a quad takes one step if its pixels need no
+// other blocks; with bilinear filtering, it takes one step for each pair of lanes that has covered pixels, under the same condition. Each
+// covered pixel of a quad is in exactly one step, and the steps have the order of the quads. Colours are read from memory without a check;
+// `sampler` may have any value, and no value stalls the unit.
 //
-// Throughput a step a clock without misses; each missed block stops the steps for 2 clocks, and its words are asked for up to 250
-// steps ahead. Latency 18 clocks without misses. Quads come from a pipeline that cannot be stopped: `sent` is high for a clock for each
-// item of texture_wrap that enters it, as texture_choice explains. Steps have no ready: they leave the queue while `out_room` is high, and
-// at most nine come after it has fallen. `idle` is high while no quad is in the pipeline or inside; `sampler` and `number`, the texture's,
-// hold while it is low. `forget` (one clock while `idle` is high) invalidates the cache in 128 clocks, in which quads wait; it is needed when a
-// texture's bytes have changed, or another texture has got its number. The palette may be written while `idle` is high, and the addresses
-// of the levels too.
+// Throughput one step per clock without misses; each missing block stalls the steps for 2 clocks, and its words are requested up to 250
+// steps ahead. Latency 18 clocks without misses. Quads come from a pipeline that cannot be stopped: `sent` is high for one clock for each
+// item of texture_wrap that enters the pipeline (texture_choice). Steps have no ready: they leave the queue while `out_room` is high, and
+// at most nine are output after `out_room` has fallen. `idle` is high while no quad is in the pipeline or in this module; `sampler`, and
+// the texture's `number`, must hold while `idle` is low. `forget` (one clock while `idle` is high) invalidates the cache in 128 clocks,
+// during which quads wait; it is required after a texture has changed in memory, or after its number has been assigned to another texture.
+// The palette and the addresses of the levels may be written while `idle` is high.
 //
 // Memory: a client of read_port.
 
@@ -38,7 +39,8 @@ module texture_sampler #(
     input  wire                          palette_write,
     input  wire  [7:0]                   palette_index,
     input  wire  [15:0]                  palette_colour,
-    // Quads: the covered pixels, never none; whether the quad is the upper half of its group of eight pixels; the last quad of its group.
+    // Quads: the mask of the covered pixels, never 0; whether the quad is in lanes 4 to 7 of its group; whether it is the group's last
+    // quad.
     output logic                         credit,
     input  wire                          sent,
     input  wire                          in_valid,
@@ -62,11 +64,11 @@ module texture_sampler #(
     output logic                         out_bilinear,
     output logic [3:0]                   out_opaque,   // lanes that are not transparent
     output logic [3:0][15:0]             out_texels,   // nearest: the colour of each lane
-    // Bilinear, of lanes 0 and 1, or 2 and 3: the colours at (u, v), (u+1, v), (u, v+1), (u+1, v+1); the weights of u+1 and of v+1.
+    // Bilinear, for lanes 0 and 1, or for 2 and 3: the colours at (u, v), (u+1, v), (u, v+1), (u+1, v+1); the weights of u+1 and of v+1.
     output logic [1:0][3:0][15:0]        out_neighbours,
     output logic [1:0][1:0][3:0]         out_weights
 );
-    // Clocks from the head of the queue to a step.
+    // Number of clocks from the head of the queue to the output.
     localparam int unsigned LATENCY = 7;
 
     logic choice_busy, queue_idle, tags_busy, sweeping, passing;
@@ -89,7 +91,8 @@ module texture_sampler #(
     logic [1:0][3:0][7:0] step_places;
     logic [3:0]           step_level;
 
-    // No step is accepted while the tags are cleared. This costs no time: they are clear long before the first quad after `forget` arrives.
+    // No step is accepted while the tags are cleared. This costs no time: the tags are clear long before the first quad after `forget`
+    // arrives.
     assign step_room = queue_room && !sweeping;
 
     texture_choice choice (
@@ -155,7 +158,7 @@ module texture_sampler #(
         .out_seconds_opaque(seconds_opaque)
     );
 
-    // The other fields of a step pass beside its texels.
+    // The other fields of a step are delayed until its texels are valid.
     logic [LATENCY-1:0] valid;
     logic [3:0]         mask;
 

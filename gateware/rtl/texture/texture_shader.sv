@@ -7,16 +7,17 @@
 //                                 └─▶ texture_loader ───────┘ texture, palette
 //
 // A group without a texture takes one clock. A group with a texture takes one clock for each half with a covered pixel (a quad of four
-// pixels), with bilinear filtering one clock for each two pixels; more if its texels are in more than 2x2 blocks of the texture. A group
-// with another texture than the one before waits until that one has left, and until texture_loader has read the texture's header and
-// palette.
+// pixels), or, with bilinear filtering, for each pair of lanes with a covered pixel. It takes more clocks if its texels are in more than
+// 2x2 blocks of the texture. A group whose texture differs from that of the previous group waits until the previous group has left the
+// sampler, and until texture_loader has read the new texture's header and palette.
 //
 // The source of the groups is a pipeline that cannot be stopped. The pipeline sends groups only while `room` is high; a group arrives
 // FLIGHT clocks after it is sent (see pipeline_fifo). Groups stay in order. A group without an opaque pixel is dropped. Output: a
-// valid/ready stream. `idle` is high while no group is inside. `forget` (one clock, while idle) forgets the texels and the texture of
-// earlier frames. The colours of textures are rounded to RGB565, with
-// `dither` by the place of the pixel; `in_line` has the lowest bits of the picture's line. With FRACTIONS they are not rounded yet, and all
-// colours have the format of colour_pkg::rounded. `table_base` is the address of the table of the textures' addresses, in words of 16 bytes.
+// valid/ready stream. `idle` is high while no group is inside. `forget` (one clock, while idle) discards the texels and the texture of
+// earlier frames. The colours of textures are rounded to RGB565; with `dither`, the threshold depends on the position of the pixel.
+// `in_line` has the lowest bits of the number of the picture's line. With FRACTIONS, the colours of textures are not rounded yet, and all
+// colours have the format of the input of colour_pkg::rounded. `table_base` is the address of the table of the textures' addresses, in
+// words of 16 bytes.
 
 `default_nettype none
 
@@ -24,7 +25,7 @@ module texture_shader #(
     parameter int unsigned ADDRESS_BITS = 23,
     parameter int unsigned GROUP_BITS   = 8,
     parameter int unsigned FLIGHT       = 5,
-    // Most groups inside, a power of two. They fill the sampler's queue: each has one or two quads.
+    // Maximum number of groups inside, a power of two. These groups can fill the sampler's queue, because each has one or two quads.
     parameter int unsigned GROUPS       = 256,
     parameter bit          FRACTIONS    = 1'b0,
     localparam int unsigned COLOUR_BITS = FRACTIONS ? 24 : 16
@@ -54,7 +55,7 @@ module texture_shader #(
     output logic                   out_valid,
     input  wire                    out_ready,
     output logic [GROUP_BITS-1:0]  out_group,
-    output logic [7:0]             out_opaque, // lanes that no transparent texel hides
+    output logic [7:0]             out_opaque, // lanes without a transparent texel
     output logic [7:0][COLOUR_BITS-1:0] out_colours,
     output logic [3:0]             out_blend   // rule by which the group is blended with the picture, see texture_blend; 0 for none
 );
@@ -86,8 +87,8 @@ module texture_shader #(
     assign out_colours = group_textured ? colours : {8{flat_colour}};
     assign out_blend   = group_textured ? blend : '0;
 
-    // Groups with a texture wait for their positions. The FIFO is wide, so it holds fewer groups than there may be inside.
-    // The lowest bits of a plane's step down have no effect.
+    // Groups with a texture wait for their positions. The FIFO is wide, so it holds fewer groups than the module. The lowest 8 bits of a
+    // plane's step_y have no effect, and are not stored.
     localparam int unsigned PLANE_BITS   = 88;
     localparam int unsigned OTHER_BITS   = $bits(in_texture) - 2 * 96;
     localparam int unsigned WAITING_BITS = 2 + 8 + 3 * PLANE_BITS + OTHER_BITS;
@@ -205,7 +206,8 @@ module texture_shader #(
         .out_opaque(step_opaque), .out_texels(step_texels), .out_neighbours(step_neighbours), .out_weights(step_weights)
     );
 
-    // The light and the line of the groups whose steps are in the filter. They wait from the group's first quad until its last step is lit.
+    // The light and the line of the groups whose steps are in the filter. Both are stored from the group's first quad until the light of
+    // its last step is used.
     logic [2:0][7:0] light;
     logic [1:0]      light_line;
     logic            light_valid, light_room, light_gone;
@@ -231,7 +233,8 @@ module texture_shader #(
         .out_colours(lit_colours)
     );
 
-    // The blend of the texture comes along with the pixels, because the next texture may be loaded while they are in the filter.
+    // The texture's rule for blending is delayed like the pixels, because the next texture may be loaded while the pixels are in the
+    // filter.
     logic [3:0] lit_blend;
 
     delay #(.WIDTH(4), .CLOCKS(texture_pkg::FILTER)) blend_delay (

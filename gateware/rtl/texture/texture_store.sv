@@ -2,13 +2,14 @@
 //
 //   head of the queue ─▶ addresses ─▶ two copies of four quarters ─▶ texels
 //
-// A quarter has the texels of even or odd columns in even or odd rows, as in the words of memory. Each copy serves two pixels of a nearest
-// texture, one on each port, or one pixel of a bilinear texture, whose four neighbours are in different quarters or are one texel. A fill
-// writes a word to both copies, half of each quarter on each port.
+// A quarter contains the texels whose columns have one parity and whose rows have one parity, in the layout of the words in memory. With
+// nearest filtering, each copy serves two pixels, one on each port. With bilinear filtering, each copy serves one pixel, whose four
+// neighbours are in different quarters or are the same texel. A fill writes a word to both copies; each port writes one half of each
+// quarter.
 //
-// Latency 4 clocks from the head to the texels, throughput a step or a word a clock. Outputs: of the first port all quarters, of the
-// second port that of the pixel's texel, as values of the format: bits 15:8 only matter for colours, and bits 7:4 are zero for indices of
-// 16 colours.
+// Latency 4 clocks from the head to the texels, throughput one step or word per clock. Outputs: from the first port the values of all
+// quarters, from the second port the value of the quarter that contains the pixel's texel. Bits 15:8 of a value are only used for RGB565
+// colours, and bits 7:4 are zero for indices of 16 colours.
 
 `default_nettype none
 
@@ -27,7 +28,8 @@ module texture_store (
     output logic [1:0][3:0][15:0]       out_values,  // copy, quarter
     output logic [1:0][15:0]            out_seconds  // copy
 );
-    // A word of memory has 32 bits of each quarter: two halves, of which a port reads one. A half has two bytes, a byte two digits.
+    // A word of memory contains 32 bits for each quarter: two halves, of which a port reads one. A half has two bytes, a byte two digits of
+    // four bits.
     localparam int unsigned ADDRESS_BITS = 11;
 
     logic         is_colour, is_digit, write;
@@ -41,7 +43,7 @@ module texture_store (
         write  <= fills;
     end
 
-    // Where a texel is in its block. The half is that of the row for indices of 16 colours, and that of the column for the others.
+    // The position of a texel in its block. The row selects the half for indices of 16 colours, and the column for the other formats.
     logic [3:0] word, half_across, half_down, byte_of, digit;
 
     for (genvar i = 0; i < 4; i++) begin : slots
@@ -85,7 +87,7 @@ module texture_store (
 
         assign out_seconds[j] = value(second, bytes[3], digits[3], is_digit);
 
-        // The first port: the neighbour in a quarter is the one of the quarter's parity.
+        // The first port: a quarter reads the neighbour whose column and row have the parities of the quarter.
         for (genvar q = 0; q < 4; q++) begin : quarters
             logic                    right, below;
             logic [2:0]              first_bytes, first_digits;

@@ -2,14 +2,15 @@
 //
 //   step ─▶ blocks ─▶ places in the cache ─▶ tags read and replaced ─▶ compared ─▶ misses
 //
-// The cache is direct mapped, with 128 places for each class of blocks: 32 columns by 16 rows of blocks in all. Columns beyond these are
-// mixed into the rows of places, and rows beyond into the columns, so that wide textures do not meet themselves along a row, and high ones
-// along a column; so are the level and the texture's number, for neighbouring levels and textures. A tag has all that is mixed, so it names
-// its block. A tag is read and replaced by one access, and compared a clock later: a step sees the tags as the steps before it left them.
+// The cache is direct mapped, with 128 places for each class of blocks; all places together hold 32 columns by 16 rows of blocks. The high
+// bits of a block's column are XORed into the row of its place, and the high bits of its row into the column of its place, so that the
+// blocks of a row of a wide texture, or of a column of a high texture, have different places. The level and the texture's number are XORed
+// too, for neighbouring levels and textures. A tag contains all these bits, so it identifies its block. A tag is read and replaced by one
+// access, and compared one clock later, so a step sees the tags as the previous steps have left them.
 //
-// `forget` (one clock while no step is inside) invalidates all tags in 128 clocks, in which `sweeping` is high and no step may come; a
-// reset does the same. Latency: `at_valid` with the places 2 clocks after the step, `out_valid` with the misses 3 clocks after it.
-// Throughput a step a clock.
+// `forget` (one clock while no step is inside) invalidates all tags in 128 clocks, during which `sweeping` is high and no step may arrive;
+// a reset does the same. Latency: `at_valid` with the places 2 clocks after the step, `out_valid` with the misses 3 clocks after it.
+// Throughput one step per clock.
 
 `default_nettype none
 
@@ -50,7 +51,8 @@ module texture_tags (
         level  <= in_level;
     end
 
-    // The classes that the pixels need, and the block of each parity on an axis: that of any slot in use.
+    // The classes that the pixels need, and for each axis and parity the block column or row: that of the first slot in use with this
+    // parity.
     texture_pkg::blocks_t blocks;
     logic [3:0]           needed, needs;
     logic [1:0][1:0][7:0] chosen;
@@ -89,7 +91,7 @@ module texture_tags (
         logic [3:0] column_place;
         logic [2:0] row_place;
 
-        // Without the parity, which is in bit 0 of blocks with four texels and in bit 1 of others.
+        // The place does not include the parity, which is bit 0 for blocks of four texels and bit 1 for blocks of eight texels.
         assign column       = blocks.places[0][i % 2][7:1];
         assign row          = blocks.places[1][i / 2][7:1];
         assign column_place = {column[4:2], format != 2'd0 ? column[5] : column[1]} ^ {row[4], row[5], row[6], row[7]};

@@ -15,15 +15,15 @@ module texture_texels (
     input  wire                        palette_write,
     input  wire  [7:0]                 palette_index,
     input  wire  [15:0]                palette_colour,
-    // By copy; the quarters in the order of texture_store.
+    // Indices: copy, quarter, as in texture_store.
     input  wire  [1:0][3:0][15:0]      in_values,
     input  wire  [1:0][15:0]           in_seconds,
-    // A clock later: the quarter of each neighbour. Of a nearest texture the first neighbour is the texel.
+    // One clock later: the quarter of each neighbour. With nearest filtering, the first neighbour is the texel.
     input  wire  [1:0][3:0][1:0]       in_quarters,
     input  wire  [1:0][1:0]            in_nearest,  // the neighbour that is the nearest texel
     output logic [1:0][3:0][15:0]      out_neighbours,
     output logic [1:0][15:0]           out_seconds,
-    output logic [1:0]                 out_opaque,  // the nearest texel
+    output logic [1:0]                 out_opaque,  // of the nearest texel
     output logic [1:0]                 out_seconds_opaque
 );
     logic is_colour;

@@ -2,8 +2,9 @@
 //
 //   quad ─▶ pairs ─▶ texels of the level ─▶ neighbours ─▶ wrapped ─▶ item
 //
-// A quad of a nearest texture makes one item, one of a bilinear texture an item for each pair of lanes that has covered pixels. No quad may
-// come in the clock after a quad with two items. Latency 4 clocks, throughput an item a clock; the pipeline cannot be stopped.
+// With nearest filtering, a quad becomes one item; with bilinear filtering, one item for each pair of lanes that has covered pixels. No
+// quad may arrive in the clock after a quad with two items. Latency 4 clocks, throughput one item per clock; the pipeline cannot be
+// stopped.
 
 `default_nettype none
 
@@ -22,19 +23,19 @@ module texture_wrap (
     output logic                    out_valid,
     output texture_pkg::item_t      out_item
 );
-    // Fields of a position: 10 bits for the columns of the largest level, and of the 8 fraction bits behind them the five that the weights
-    // depend on; then whether it is below 0, at or above 1, or in an odd repeat.
+    // Widths of a position: 10 bits for the column or row in the largest level, and 5 fraction bits, on which the weights depend. Three
+    // more bits show whether the position is below 0, at or above 1, or in an odd repeat.
     localparam int unsigned KEPT  = 15;
     localparam int unsigned SHARE = 5;
 
-    // A second item of a quad follows the first one at once.
+    // The second item of a quad follows in the next clock.
     logic follows, both, upper_alone;
 
     assign both        = bilinear && in_mask[1:0] != '0 && in_mask[3:2] != '0;
     assign upper_alone = bilinear && in_mask[1:0] == '0;
 
-    // The position in texels of the level, with 5 fraction bits, is the position in the repeat without its last bits, as many as the base-2
-    // logarithm of the level's side is less than 10. These are cut off, at most 10.
+    // The position in texels of the level, with 5 fraction bits, is the position in the repeat, shifted right by 10 minus the base-2
+    // logarithm of the level's side, which is at most 10 bits.
     logic [1:0][3:0] cut;
 
     for (genvar axis = 0; axis < 2; axis++) begin : levels
@@ -94,7 +95,7 @@ module texture_wrap (
         level[2:1]  <= level[1:0];
     end
 
-    // Cuts off up to 11 bits. Above the position, in the highest four bits, wrong ones stay; they are outside of the level.
+    // Shifts right by up to 11 bits. The highest bits of the result are undefined; they are above the bits of the level.
     function automatic logic [KEPT-1:0] cut_off(input logic [KEPT-1:0] place, input logic [3:0] bits);
         logic [KEPT-1:0] coarse;
         logic [3:0]      of_bit;
@@ -106,11 +107,11 @@ module texture_wrap (
         end
     endfunction
 
-    // Of lanes 2 and 3, only nearest textures need a position.
+    // Lanes 2 and 3 are only used with nearest filtering, which needs no fraction bits.
     logic [1:0][3:0][9:0]       whole;
     logic [1:0][1:0][SHARE-1:0] shares;
     logic [1:0][1:0][SHARE-1:0] unused_share;
-    logic [1:0][9:0]            extent;  // the columns or rows of a level, as bits
+    logic [1:0][9:0]            extent;  // mask of the bits of a column or row of the level
     logic [1:0][3:0]            below, past, odd;
 
     always_ff @(posedge clk) begin
@@ -127,10 +128,12 @@ module texture_wrap (
         end
     end
 
-    // Neighbours of a bilinear texture are half a texel to both sides: u is one less than the column if the fraction is below 120/256, and
-    // u+1 is one more otherwise. In a column with ones above the level's bits, a carry leaves if the neighbour is outside.
+    // With bilinear filtering, the neighbours are the texels half a texel to both sides of the position: u is the previous column if the
+    // fraction is below 120/256; otherwise u+1 is the next column. `left` has zeros and `right` has ones above the bits of the level, so
+    // that the carry out of the sum shows whether the neighbour is outside of the level.
     logic [1:0][3:0][9:0] sums;
-    // The slot is outside of the level; at or above 1, `highest` is stronger.
+    // Whether the slot becomes the lowest or the highest column or row of the level, because it is outside; `highest` has priority.
+    // `flipped`: whether the slot is mirrored.
     logic [1:0][3:0]      lowest, highest, flipped;
     logic [1:0][9:0]      extent_sum;
     logic [1:0][1:0][3:0] weights;
@@ -172,7 +175,7 @@ module texture_wrap (
                 highest[axis][LANE + 1] <= !is_below[1] && (is_past[1] || limited && past_sum[10]);
                 flipped[axis][LANE]     <= is_odd[0];
                 flipped[axis][LANE + 1] <= is_odd[1];
-                // To nearest sixteenths, of the position half a texel to the left.
+                // The fraction of the position half a texel to the left, rounded to sixteenths.
                 weights[j][axis]        <= share[4:1] + 4'(share[0]) + 4'd8;
                 upper[j][axis]          <= less;
             end
