@@ -25,10 +25,10 @@
 // the mask is written. Throughput one group per clock; band_pipe explains the hazards.
 //
 // With BLEND, pixels can be blended with the stored colours: first a group asks for the lanes that pass the depth test, then come groups
-// of one blended pixel each (band_pipe). From the answer until the last of these groups, `behind` is the colour of the lane `behind_lane`
-// of the clock before in this row; for a pixel not yet written it is `band_clear`, which must be constant while groups are blended. After
-// the answer `group_ready` stays high until the last blended pixel, because the lanes of these pixels are not in the pipe. `group_row`
-// must hold from the group that asks until then.
+// of one blended pixel each (band_pipe). From the answer until the last of these groups, `behind` is the stored colour in this row of the
+// lane that `behind_lane` selected in the previous clock; for a pixel not yet written it is `band_clear`, which must be constant while
+// groups are blended. After the answer `group_ready` stays high until the last blended pixel, because the lanes of these pixels are not in
+// the pipe. `group_row` must hold from the group that asks until then.
 //
 // Bands: an item of the stream `band_*` ends the drawing of a band and has the parameters of its flush: the address of its first
 // 128-bit word, its `lines` (at least 1), `stride` (rows of a line) and clear colour. Groups accepted up to and including the first clock

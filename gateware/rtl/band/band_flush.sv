@@ -5,13 +5,13 @@
 //            └──▶ clear_row, a clock later, ─▶ address ──┘
 //
 // One row is one 128-bit word: eight RGB565 pixels, the leftmost in the lowest bits, with the clear colour for pixels that are not
-// written, or, with `with_sky` (SKY only), with the next colour of the stream `sky_*` (band_sky). With `dither` colours of the sky, and
-// averages, are dithered, otherwise rounded to nearest. With `compose` other than 0 (STEREO only) a pixel holds the luminances of two eyes, {right, left}. If `compose` is 1, the left luminance becomes red, the right
-// luminance blue, and the smaller of the two green. If it is 2, the left luminance becomes red, and the right luminance green and blue.
-// The colour word of row r is written to address `base` + r. With `with_depth`, the rows of a span are read again after its colours: the
-// depths of each row are two words of four 32-bit depths (0 for pixels that are not written), at the addresses `depth_base` + 2r and
-// `depth_base` + 2r + 1. Colour words are output in the order of their addresses, and so are depth words, so the DDR3 memory rarely has to
-// open another row.
+// written, or, with `with_sky` (SKY only), with the next colour of the stream `sky_*` (band_sky). Colours of the sky and averages are
+// dithered with `dither`, and otherwise rounded to nearest. With `compose` other than 0 (STEREO only) a pixel holds the luminances of two
+// eyes, {right, left}. If `compose` is 1, the left luminance becomes red, the right luminance blue, and the smaller of the two green. If it
+// is 2, the left luminance becomes red, and the right luminance green and blue. The colour word of row r is written to address `base` + r.
+// With `with_depth`, the rows of a span are read again after its colours: the depths of each row are two words of four 32-bit depths (0 for
+// pixels that are not written), at the addresses `depth_base` + 2r and `depth_base` + 2r + 1. Colour words are output in the order of their
+// addresses, and so are depth words, so the DDR3 memory rarely has to open another row.
 //
 // With `average` (AVERAGE only) the band holds four samples for each pixel, and a word is the average of four rows: of two rows side by
 // side in each of two lines. Spans come in pairs, of whole lines of `stride` rows. The first word is written to the address `base`; `gap`
@@ -47,7 +47,7 @@ module band_flush #(
 ) (
     input  wire                     clk,
     input  wire                     rst,
-    // Work.
+    // The flush to perform, and its state.
     input  wire                     start,
     input  wire  [ADDRESS_BITS-1:0] base,
     input  wire  [ADDRESS_BITS-1:0] depth_base,
@@ -98,7 +98,7 @@ module band_flush #(
     state_t                state;
     part_t                 part, last_part;
     logic                  depth_too, in_span, issue, part_ends, span_ends, takes_sky, dithers, averaging, paired;
-    // The row of a word that is read, of the four of an average: {right, lower}.
+    // Which of the four rows of an average is read: {right, lower}.
     logic [1:0]            corner;
     logic                  word_ends;
     // Differences of row numbers: to the next row, and in an average from the upper to the lower row, and back to the next upper row.

@@ -48,12 +48,12 @@ module band_pipe #(
     input  wire  [7:0]          stored_written,
     output logic [ROW_BITS-1:0] write_row,
     output logic [7:0]          write_lanes,
-    // Those of `write_lanes` whose depth codes are written.
+    // The lanes of `write_lanes` whose depth codes are written.
     output logic [7:0]          write_depths,
     output logic [1:0]          write_halves,
     output logic [8*18-1:0]     write_codes,
     output logic [8*16-1:0]     write_colours,
-    // Lanes that pass the depth test, of a group that writes them or asks.
+    // Lanes that pass the depth test, of a group that is written or asks for these lanes.
     output logic [7:0]          drawn_lanes,
     // State.
     output logic                empty,

@@ -1,4 +1,4 @@
-// Brings one bit from any clock domain into the domain of `clk`, through two flip-flops in a row.
+// Brings one bit from any clock domain into the domain of `clk`, through two flip-flops in series.
 //
 // Latency 2 to 3 clocks. A level is only guaranteed to be seen if it holds for longer than one period of `clk`. There is no reset
 // input: after a reset of the design the output follows the input within the latency.

@@ -4,8 +4,8 @@
 
 package colour_pkg;
     /* verilator lint_off UNUSEDSIGNAL */
-    // A threshold for `rounded`, of the pixel in column x and line y of a pattern of 4x4 pixels. Without `dither` it is half a step, which
-    // rounds to nearest.
+    // Returns the threshold of `rounded` for the pixel in column x and line y of a pattern of 4x4 pixels. Without `dither` the threshold is
+    // half a step, which rounds to nearest.
     function automatic logic [2:0] threshold(input logic dither, input logic [1:0] x, input logic [1:0] y);
         threshold = dither ? {x[0] ^ y[0], y[0], x[1] ^ y[1]} : 3'd4;
     endfunction
@@ -22,7 +22,7 @@ package colour_pkg;
         rounded = {red, green, blue};
     endfunction
 
-    // Converts RGB565 to the format of the colours of `rounded`, whose fractions are then 0.
+    // Converts RGB565 to the input format of `rounded`; the fraction bits are then 0.
     function automatic logic [23:0] fractions(input logic [15:0] colour);
         fractions = {colour[4:0], 3'd0, colour[10:5], 2'd0, colour[15:11], 3'd0};
     endfunction
@@ -37,8 +37,8 @@ package colour_pkg;
         pair  = {red, green, blue};
     endfunction
 
-    // The average of four pixels in RGB565, from the sums of two and two: adds `carry` to each sum of four, divides it by four, and rounds
-    // down.
+    // Returns the average of four pixels in RGB565, from two sums of two pixels: adds `carry` to each sum of four, divides it by four, and
+    // rounds down.
     function automatic logic [15:0] average(input logic [18:0] a, input logic [18:0] b, input logic carry);
         logic [6:0] red, blue;
         logic [7:0] green;

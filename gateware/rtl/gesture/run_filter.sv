@@ -3,7 +3,7 @@
 //
 //   marked    . M . M M M M . .        reach 2
 //   run       0 0 1 0 1 2 3 4 0        marked pixels immediately before this pixel, at most 15
-//   full      . . . . . F F . .        the last of three marked pixels in a row
+//   full      . . . . . F F . .        the last of three consecutive marked pixels
 //   kept      . . . . . K K K K        for the column two to the left: the pixels of the run
 //
 // The decision about a pixel needs the `reach` pixels after it, so `out_x` lags by `reach`. The clocks `blank` and `next`

@@ -143,8 +143,9 @@ module raymarcher #(
     assign reset = rst || restart;
 
     // The number of the current band (`band`), its parity (`odd`), and the number of its pixels that have not been taken (`left`).
-    // `early` is the number of rays of the next band that have entered the lanes. It is below 0 while as many rays of the current band have
-    // not entered. It decides from registers alone whether the next ray may enter; the ray itself comes from LUT memory.
+    // `early` is the number of rays of the next band that have entered the lanes. A negative value is the number of rays of the current
+    // band that have not entered yet, negated. Whether the next ray may enter depends on `early` alone, which is a register; the ray itself
+    // comes from LUT memory.
     logic                  odd, may_enter;
     logic [5:0]            band;
     logic [14:0]           left;

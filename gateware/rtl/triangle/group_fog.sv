@@ -1,22 +1,23 @@
-// Puts groups of eight pixels in fog: mixes each colour with the fog's by the depth code of its pixel (docs/formats/triangle.md, "Fog").
+// Applies fog to groups of eight pixels: mixes each colour with the colour of the fog, by the depth code of its pixel
+// (docs/formats/triangle.md, "Fog").
 //
 //             ┌─ fifo: groups ─────────────────────────────────────────────────────────────────────────────────┐
 //   group ──▶ ┤                                                                                                ├──▶ group
 //             └─ quads ─▶ log2 of the codes ─▶ table of shares ─▶ mix with the fog ─▶ round ──▶ fifo: colours ─┘
 //
 // A group takes one clock for each half with a pixel in its mask (a quad of four pixels). Streams are valid/ready; `in_ready` depends on
-// `in_mask`. Latency 14 clocks from the last quad of a group; throughput one quad per clock. The pipeline of quads cannot be stopped: a group enters only while the FIFO
-// of groups has a free place, and the FIFO of colours, which is as deep, never has more groups. Without `enable` there is no fog. Each
-// colour has the format of colour_pkg::rounded, and is rounded to RGB565, with `dither` by the place of its pixel. `enable`, `dither`, `fog`
-// and `first_line`, the place in the picture of the groups' line 0, must hold while groups are inside. `idle` is high while
-// no group is inside.
+// `in_mask`. Latency 14 clocks from the last quad of a group; throughput one quad per clock. The pipeline of quads cannot be stopped: a
+// group enters only while the FIFO of groups has a free entry. The FIFO of colours is as deep, and never holds more groups. Without
+// `enable` there is no fog. Input colours have the format of the input of colour_pkg::rounded, and are rounded to RGB565; with `dither`,
+// the threshold depends on the position of the pixel. `enable`, `dither`, `fog` and `first_line`, the number in the picture of the groups'
+// line 0, must hold while groups are inside. `idle` is high while no group is inside.
 
 `default_nettype none
 
 module group_fog #(
-    // Width of what passes with a group besides its mask, codes and colours.
+    // Width of the fields of a group other than mask, codes and colours.
     parameter int unsigned BESIDE_BITS = 8,
-    // Most groups inside, a power of two.
+    // Maximum number of groups inside, a power of two.
     parameter int unsigned GROUPS      = 32
 ) (
     input  wire                    clk,
@@ -64,7 +65,7 @@ module group_fog #(
     assign idle      = !group_valid;
     assign out_valid = group_valid && colours_valid;
 
-    // What travels with a quad.
+    // Fields that are delayed with a quad.
     logic [LAST:1]       valid;
     logic                added_7, half_12, ends_12;
     logic [1:0]          line_1, line_11;
@@ -104,8 +105,8 @@ module group_fog #(
 
         fog_index indices (.clk, .enable, .offset(fog.offset), .code(code_1), .index(index_6[lane]));
 
-        // The fog less the colour, as the sum of fog + 1 and the complement of the colour, which a DSP48 adds before its multiplier. Each sum
-        // of a channel is at most 255·2^8 + 128, so red does not carry into blue, although a difference may be negative.
+        // The fog minus the colour, as the sum of fog + 1 and the complement of the colour, which a DSP48 adds before its multiplier. Each
+        // sum of a channel is at most 255·2^8 + 128, so red does not carry into blue, although a difference may be negative.
         logic signed [24:0] difference_9;
         logic signed [8:0]  green_difference_9;
         logic signed [9:0]  share_9;

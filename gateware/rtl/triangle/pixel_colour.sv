@@ -5,8 +5,8 @@
 //           depth ─▶ zeros by 4 ─▶ zeros, index ─▶ table: inverse y ──┐
 //           light ────────────────────────────────────────────────────┴▶ light·y + half ─▶ eight bits, by the zeros
 //
-// A channel has the format of colour_pkg::rounded, and is at most full. `zeros` is the number of leading zeros of the depth, at most 11. The
-// table takes half a RAMB36. Latency 8 clocks, throughput one pixel per clock; the pipeline cannot be stopped.
+// A channel has the format of the input of colour_pkg::rounded, and is at most full light. `zeros` is the number of leading zeros of the
+// depth, at most 11. The table takes half a RAMB36. Latency 8 clocks, throughput one pixel per clock; the pipeline cannot be stopped.
 
 `default_nettype none
 

@@ -103,7 +103,8 @@ module raster_unit #(
     // `flags.size` must not change during a frame, nor in the clock before `start`.
     always_ff @(posedge clk) {last_band, rows, stride, words} <= band_pkg::cut(flags.size);
 
-    // Words in memory from the beginning of the frame to that of its quarter, from a band to the next band, and between the lines of a band.
+    // Numbers of words in memory from the beginning of the frame to the beginning of the quarter, from a band to the next band, and between
+    // the lines of a band.
     logic                    averages;
     logic [ADDRESS_BITS-1:0] quarter_words;
     logic [10:0]             band_words;
@@ -425,7 +426,7 @@ module raster_unit #(
         group_codes      = of_pixels ? {8{pixel.code}} : drawn_codes;
         group_colours    = state == SKY_FIRST ? sky_colours : of_pixels ? {8{pixel.colour}} : drawn_colours;
         group_asks       = drawn_asks && !of_pixels;
-        // Groups of the sky are written as blended pixels are: without a depth.
+        // Groups of the sky are written like blended pixels: without a depth test.
         group_blended    = of_pixels ? state == SKY_FIRST : drawn_blended;
     end
 

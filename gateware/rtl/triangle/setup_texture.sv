@@ -65,7 +65,7 @@ module setup_texture (
 
     always_ff @(posedge clk) begin
         place <= coordinates[number];
-        // Vertices that come again change nothing.
+        // The comparisons continue after the last vertex; vertices that appear again change nothing.
         if (count == 4'd1 || $signed(place) < $signed(smallest)) smallest <= place;
         if (count == 4'd1 || $signed(place) > $signed(largest)) largest <= place;
         most     <= {largest[31:17] - period, largest[16:0]};

@@ -6,8 +6,9 @@
 //                                  ▲      │ + step_x
 //                                  └──────┘
 //
-// The colours of smooth triangles are rounded to RGB565, with `dither` by the place of the pixel; `in_line` has the lowest bits of the
-// picture's line. With FRACTIONS they are not rounded yet, and all colours have the format of colour_pkg::rounded.
+// The colours of smooth triangles are rounded to RGB565; with `dither`, the threshold depends on the position of the pixel. `in_line` has
+// the lowest bits of the number of the picture's line. With FRACTIONS, these colours are not rounded yet, and all colours have the format
+// of the input of colour_pkg::rounded.
 //
 // A group of a flat triangle takes one clock. A group of a smooth triangle takes one clock per pixel, from the first pixel (the fifth if
 // the first four are not covered) to the last covered pixel: about five clocks on average, and at most eight. Three multipliers therefore

@@ -176,7 +176,8 @@ module triangle_engine #(
         wire _unused = &{1'b0, drop, raster_read_answer, ask_valid[5:3], ask_addr[6*ADDRESS_BITS-1:3*ADDRESS_BITS], data_ready[5:3]};
     end
 
-    // Texels have a port of their own: the queue of the sampler hides their latency, but not the time behind lists and descriptors too.
+    // Texels have a separate port: the sampler's queue hides the latency of memory, but not an additional wait for reads of lists and
+    // descriptors.
     if (TEXTURE && (TRIANGLES || LINES)) begin : texels
         read_port #(.CLIENTS(1), .ADDRESS_BITS(ADDRESS_BITS)) texture_read (
             .clk, .rst, .drop, .idle(ports_idle[3]),

@@ -15,7 +15,7 @@
 // column, mask, eight depth codes u18, eight colours RGB565}, lane 0 (the leftmost pixel) in the lowest bits. The mask is never
 // 0. Each group that a triangle covers is sent once, or not at all if its texels are transparent; triangles keep their order.
 //
-// With FOG, `group_fog` follows, which puts the groups in fog if `has_fog` is high, and takes one clock for each half of a group with a
+// With FOG, `group_fog` follows, which applies fog to the groups if `has_fog` is high, and takes one clock for each half of a group with a
 // covered pixel. With TEXTURE, `texture_blend` comes last: groups may be blended with the picture, see band_buffer.
 //
 // Streams are valid/ready, with a register between any two ready signals. The lanes cannot be stopped; instead, the walker stalls while
@@ -145,14 +145,14 @@ module triangle_raster #(
         .out_mask(found.mask), .out_codes(found.codes), .out_colour(found_colour)
     );
 
-    // The groups with their colours, `blend` for the rule by which one is blended with the picture; then the same in fog.
+    // The groups with their colours, and the rule by which a group is blended with the picture (`blend`); then the same groups with fog.
     logic       shaded_valid, shaded_ready, foggy_valid, foggy_ready;
     group_t     shaded;
     logic [7:0] opaque, foggy_mask;
     logic [3:0] blend, foggy_blend;
     logic [8*16-1:0] foggy_colours;
 
-    // With FOG, colours become RGB565 only in the fog.
+    // With FOG, colours are rounded to RGB565 only in group_fog.
     localparam int unsigned COLOUR_BITS = FOG ? 24 : 16;
 
     logic [8*COLOUR_BITS-1:0] shaded_colours;
