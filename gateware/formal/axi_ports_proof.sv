@@ -64,7 +64,7 @@ module axi_ports_proof #(
     stream_checker #(.WIDTH(36)) write_addresses (.clk, .rst, .valid(aw_valid), .ready(aw_ready), .data({aw_id, aw_addr}));
     stream_checker #(.WIDTH(18)) written_words (.clk, .rst, .valid(w_valid), .ready(w_ready), .data({w_strb, w_data}));
 
-    // A command, and a word, stay until they are taken.
+    // Commands and words stay until they are taken.
     logic [3:0] waiting;
     logic [1:0] words_waiting;
 
@@ -73,7 +73,7 @@ module axi_ports_proof #(
         words_waiting <= rst ? '0 : wdata_valid & ~wdata_ready;
     end
 
-    // Writers whose addresses went out and whose words have not, the oldest at index 0.
+    // Writers of the addresses that memory has taken without their words, the oldest at index 0.
     logic [2*MOST:0] order;
     logic [2:0]      level;
     logic            ar, aw, w;

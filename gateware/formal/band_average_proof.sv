@@ -2,8 +2,9 @@
 // has two rows, and a band one or two pairs of lines, so the rows of the first word are 0, 1, 2 and 3, and those of the second word 4, 5, 6
 // and 7. Two words may be requested at a time. Back-pressure and restarts occur at any time.
 //
-// All pixels of a row have one of two colours, but the rightmost pixel, which is not drawn and therefore has the clear colour, or the number of
-// the word in a sky, dithered. After the flush the rows must be clear, and rows of other lines must not be clear.
+// All pixels of a row except the rightmost have the same colour, one of two. The rightmost pixel is not drawn: it has the clear colour, or,
+// in a flush with a sky, the number of its word, dithered. After the flush the rows must be clear, and rows of other lines must not be
+// clear.
 
 `default_nettype none
 

@@ -2,8 +2,9 @@
 //
 // The pipe works on two rows of a depth memory with the latencies of band_bank, which also has a written bit per pixel. Arbitrary groups
 // (eight pixels of a row) arrive at arbitrary times. The proof tracks one pixel, an arbitrary lane of an arbitrary row: each accepted group
-// updates a copy of this pixel at once. When the pipe is empty, the copy and the memory must agree. With BLEND, any group may ask, or be a
-// blended pixel. An answer must be that of the copy when the group was accepted; one is outstanding at a time.
+// updates a copy of this pixel at once. When the pipe is empty, the copy and the memory must agree. With BLEND, any group may be a blended
+// pixel, or ask which of its lanes pass the depth test. The answer must agree with the copy at the time when the group was accepted; one
+// answer is outstanding at a time.
 
 `default_nettype none
 

@@ -1,7 +1,7 @@
 // Proof of the multiplexer for memories with one command per clock, between three banks with any commands, the refresher and the memory.
 // At most one command is given per clock, and it reaches the memory unchanged one clock later. The times between commands of different
-// banks are kept. No command is given during a refresh, and a refresh begins soon after all banks are ready for it. A command waits at
-// most for the commands of the other direction and for the others in its turn.
+// banks are kept. No command is given during a refresh, and a refresh begins soon after all banks are ready for it. A command waits at most
+// for a run of commands of the other direction, and for one turn of each other bank.
 
 `default_nettype none
 
@@ -56,7 +56,7 @@ module memory_multiplexer_proof #(
         activates = any && !cas[from] && !we[from];
     end
 
-    // The kinds of the commands before, the latest in bit 0.
+    // The kinds of the previous commands, the latest in bit 0.
     logic [FOUR_ACTIVATES-2:0] was_activate, was_read, was_write;
     logic [3:0]                row_count;
 

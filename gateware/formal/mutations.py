@@ -255,7 +255,7 @@ MUTATIONS = {
         _write("|| bursting && gathered != '0;", ";", "commands.valid_stays"),
         _write("(cmd_ready && bursting)", "(bursting)", "commands.payload_stable"),
         _write("(cmd_ready && bursting)", "(bursting)", "commands_in_order"),
-        # Fault: a word comes when its FIFO is full.
+        # Fault: the port accepts a word while the FIFO of the data is full.
         _write("waiting_next < COUNT_BITS'(DEPTH)", "waiting_next < COUNT_BITS'(DEPTH + 2)", "data_in_order"),
         _write(".in_data   ({in_strobe, in_data})", ".in_data   ({in_strobe, in_data << 1})", "data_in_order"),
         _write("(move),\n        .in_ready  (),\n        .in_data   ({", "(move && gone),\n        .in_ready  (),\n        .in_data   ({",
@@ -280,7 +280,7 @@ MUTATIONS = {
         _extents("sweeps_2 ? EMPTY : united", "united", "in_order"),
         _extents("empties_2 ? EMPTY : updated", "updated", "in_order"),
         _extents("united(old, {column_2, column_2})", "{column_2, column_2}", "in_order"),
-        # Fault: two groups of a line in a row update the same old extent.
+        # Fault: two successive groups of a line update the same old extent.
         _extents("same[drawn_1] ? updated : kept[drawn_1]", "kept[drawn_1]", "in_order"),
         _extents("if (valid[4]) line_row", "line_row", "in_order"),
         _extents("all ? {last_column, {COLUMN_BITS{1'b0}}} : united", "united", "in_order"),

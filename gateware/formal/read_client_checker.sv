@@ -31,8 +31,8 @@ module read_client_checker #(
 );
     // Upper bound on the clocks from the answer of memory until the word is valid at the client.
     localparam int unsigned SHOWN_WITHIN = 3;
-    // Upper bound on the clocks until an address is taken while `delayed` is low: the clocks of a burst of the other client, of the wait
-    // until half of this client's FIFO is empty, and of the arbitration.
+    // Upper bound on the clocks until an address is taken while `delayed` is low: the clocks of a burst of the other client, the clocks
+    // until half of this client's FIFO is empty, and the clocks of the arbitration.
     localparam int unsigned TAKEN_WITHIN = 11;
 
     // Number of commands that memory has taken, and of words that the client has taken.

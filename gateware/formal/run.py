@@ -33,9 +33,9 @@ _ABC = Path(find_spec(YOSYS).origin).parent / "yosys-abc"
 # Number of proofs that run at a time: one on each core.
 _AT_A_TIME = len(os.sched_getaffinity(0))
 
-# Engines of bounded model checking. For most proofs the solver on bits needs a third of the time of the solver on words. Only the solver
-# on words reports the failed properties and supports cover statements. Its option `--stbv` represents the state as bit vectors, the only
-# form that Bitwuzla accepts.
+# Engines of bounded model checking. For most proofs the bit-level solver needs a third of the time of the word-level solver. Only the
+# word-level solver reports the failed properties and supports cover statements. Its option `--stbv` represents the state as bit vectors,
+# the only form that Bitwuzla accepts.
 _BITS = "abc bmc3"
 _WORDS = "smtbmc --stbv --nomem --nopresat bitwuzla"
 
@@ -113,7 +113,7 @@ PROOFS = [
     Proof("classify", "classify_proof", 14),
 ]
 
-# The files without the stand-ins for modules of gateware/rtl, which only the proofs that list them read.
+# All files except the stand-ins for modules of gateware/rtl: a stand-in is read only by the proofs that list it.
 _STAND_INS = {name for proof in PROOFS for name in proof.stand_ins}
 _PROPERTIES = [path for path in sorted(FORMAL.glob("*.sv")) if path.stem not in _STAND_INS]
 
@@ -173,7 +173,7 @@ def check(proof, mode, engine, folder, sources=None, only=None):
             cwd=folder.parent, PATH=os.pathsep.join(map(str, (FORMAL / "solver", _PROGRAMS, os.environ["PATH"]))))
         return "PASS", []
     except ToolError as error:
-        # The name of a module with parameters has other characters, too, but no point.
+        # The name of a module with parameters contains further characters, but no dot.
         found = re.findall(r"failed assertion [^.\n]+\.(\S+) at", str(error))
         found += re.findall(r"unreached cover statement [^.\n]+\.(\S+) at", str(error))
         verdict = (folder / "status").read_text().split()[0] if (folder / "status").exists() else "ERROR"
@@ -209,7 +209,7 @@ def _mutated(proof, mutation):
     [source] = [source for source in proof.sources if source.name == mutation.source]
     text = source.read_text()
     if text.count(mutation.old) != 1:
-        raise ValueError(f"mutation of {proof.name}: {source.name} has {text.count(mutation.old)} times {mutation.old!r}, expected 1")
+        raise ValueError(f"mutation of {proof.name}: {source.name}: expected one {mutation.old!r}, found {text.count(mutation.old)}")
     return source, text.replace(mutation.old, mutation.new)
 
 

@@ -1,8 +1,8 @@
 // Proof of the queue of texture steps, for steps with any misses, at any distance, and words of memory at any time. Steps are numbered.
 // Each step is read once, in order, with its own fields and places. Each block that the step missed is filled with two words after the
 // previous step is read and before this step is read, so no block is replaced before all earlier steps have read it. A step leaves only
-// while there is room, or after it has been filled. Every wait is bounded. To keep the proof short, the queue holds fewer steps than in the
-// sampler.
+// while `out_room` is high, or after its blocks have been filled. Every wait is bounded. To keep the proof short, the queue holds fewer
+// steps than in the sampler.
 
 `default_nettype none
 
@@ -30,7 +30,7 @@ module texture_queue_proof (
     logic [3:0]           done = '0, left, lowest;
     logic                 half = 1'b0;
     logic [1:0]           waits = '0, refused = '0;
-    // A clock ago: a step may leave.
+    // Whether a step was allowed to leave in the previous clock.
     logic                 may = 1'b0;
 
     assign sent = in_valid && room && !rst;

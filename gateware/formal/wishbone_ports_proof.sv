@@ -1,6 +1,6 @@
 // Proof of the joint Wishbone port of two readers and two writers, for any commands, and for a memory that answers at any time. Commands and
 // words are numbered: each access is that of one command, unchanged, in the order of its port, and stays until it is answered. A port waits
-// at most for the access that takes place, and for one of each other port.
+// at most for the current access, and for one access of each other port.
 
 `default_nettype none
 
