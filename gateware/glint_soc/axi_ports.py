@@ -19,8 +19,8 @@ class AxiPorts(MemoryPorts):
 
     Each access is a burst of one word, because the words of a port need not be consecutive. The identifier of an access is the number of
     its port among the readers, or among the writers. Memory may therefore answer different ports in any order, and must answer each port
-    in the order of its accesses, as AXI demands. A write is in memory when it is answered, which `pending` tells. Throughput is a read and
-    a write per clock.
+    in the order of its accesses, as AXI demands. A write is in memory when it is answered; until then `pending` is high. Throughput: one
+    read and one write per clock.
 
         readers ─▶ turn ─▶ AR                R ─▶ reader of the identifier
         writers ─▶ turn ─┬▶ AW               B ─▶ pending writes
@@ -35,7 +35,7 @@ class AxiPorts(MemoryPorts):
             self.comb += [channel.burst.eq(_BURST_INCR), channel.size.eq(log2_int(self._bits // 8)), channel.cache.eq(_CACHE_BUFFERABLE)]
         self.comb += [axi.r.ready.eq(1), axi.b.ready.eq(1)]
         failed = [axi.r.valid & (axi.r.resp != _RESPONSE_OKAY), axi.b.valid & (axi.b.resp != _RESPONSE_OKAY)]
-        # If two answers fail in the same clock, one is counted: the counter tells whether memory works.
+        # If two answers fail in the same clock, only one is counted: the counter only shows whether memory works.
         self.comb += self.error.eq(reduce(or_, failed))
 
         if readers:

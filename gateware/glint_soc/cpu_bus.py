@@ -1,4 +1,4 @@
-"""Arbiter between the CPU's two buses and the shared bus, which registers one request at a time, and the selections of the shared bus's slaves."""
+"""Arbiter between the CPU's two buses and the shared bus, with registers for one request, and the selections of the bus's slaves."""
 
 from litex.gen import LiteXModule
 from litex.soc.interconnect import wishbone
@@ -19,7 +19,7 @@ class CpuBus(LiteXModule):
 
     A request reaches `bus` one clock after the CPU issues it. A write is acknowledged when it is stored in these flip-flops, and
     takes effect before all later requests. The address of a burst is incremented here, so only the first word of a burst takes the
-    additional clock. A CPU without a data cache reads single words, as every CPU does from registers.
+    additional clock. A CPU without a data cache only reads single words, and every CPU reads registers as single words.
     """
 
     def __init__(self, data, instructions):

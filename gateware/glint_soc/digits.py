@@ -6,7 +6,7 @@ from migen import Case, If, Signal
 from .parameters import Parameter
 
 DIGITS = 4
-"""Digits of a display."""
+"""Number of digits of each display."""
 
 _SLOT_BITS = 13
 _DARK_BITS = 9

@@ -41,7 +41,8 @@ _PINS = {
     "i2c": _WIRES,
     "gesture": [*((name, 1) for name in ("pclk", "href", "vsync", "xclk", "reset_n", "power_down")), ("d", 8), *_WIRES],
 }
-"""Pins of blocks with a device. The wires of I2C are open drain: an output of 0 pulls the wire low, and an input is its state."""
+"""Pins of the blocks that control an external device. The wires of I2C are open drain: an output of 0 pulls the wire low, and an input is
+its state."""
 
 MODES = {"1280x720": CEA_1280X720, "640x480": CEA_640X480}
 """Video modes of the scan-out."""
@@ -95,7 +96,7 @@ def _complete(what, given, defaults):
 
 
 class _Platform(GenericPlatform):
-    """Ports without pins of an FPGA."""
+    """Platform of a core, whose ports have no pins of an FPGA."""
 
     def __init__(self, name):
         GenericPlatform.__init__(self, device="", io=[("clk", 0, Pins(1)), ("rst", 0, Pins(1))], name=name)
@@ -218,11 +219,11 @@ def write(soc, design, core, video, folder):
         stimulus += vectors.resolved(vectors.CUBE.read_text(), registers, origin)
     if video:
         stimulus += vectors.resolved(vectors.shown_frame(video, "triangle" in core["blocks"]), registers, origin)
-    # Blocks without a picture: that they answer.
+    # Blocks without a picture: checks only that the block responds.
     answers = {"gesture": f"expect gesture_ident ffffffff {GESTURE:x}", "i2c": "expect i2c_status 8 0"}
     stimulus += [line for name, text in answers.items() if name in core["blocks"] for line in vectors.resolved(text, registers, origin)]
     if core["memory"]["bus"] in ("axi", "wishbone"):
-        # The scan-out, which goes on reading, stops first.
+        # Stops the scan-out first, because its reads could add errors.
         stop = ["write scanout_control 0", "wait scanout_status 3"] if video else []
         stimulus += vectors.resolved("\n".join([*stop, "errors memory_errors"]), registers, origin)
     files = {

@@ -20,7 +20,7 @@ CAMERA_CLOCK = 25e6
 """Largest frequency of the sensor's input clock in Hz. The OV5640 takes up to 27 MHz, the OV7670 more."""
 
 PIXEL_CLOCK = 66e6
-"""Largest frequency of the sensor's clock PCLK in Hz, for the boards' constraints. 640x480 at 60 Hz takes some 49 MHz."""
+"""Largest frequency of the sensor's clock PCLK in Hz, for the boards' constraints. 640x480 at 60 Hz needs about 49 MHz."""
 
 SNAPSHOT_WORDS = 2048
 

@@ -62,7 +62,7 @@ class MemoryBank(LiteXModule):
             If(shows_row,
                 cmd.a.eq(address[columns:]),
             ).Else(
-                # Bit 10 asks for the automatic precharge.
+                # Bit 10 requests the automatic precharge.
                 cmd.a.eq(Cat(Replicate(0, alignment), address[:columns], Replicate(0, 10 - geometry.colbits), ends_row)),
             ),
         ]

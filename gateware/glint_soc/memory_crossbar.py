@@ -126,7 +126,7 @@ class MemoryCrossbar(LiteDRAMCrossbar):
                 self.comb += port.wdata.ready.eq(delayed(self, ended & done_write, self.write_latency))
                 writer |= Mux(ended, len(writers), 0)
                 writers.append(port)
-        # Memory ignores data and strobes outside of writes, so any port's may be selected then.
+        # Memory ignores data and strobes outside of writes, so those of any port may be selected then.
         writer = delayed(self, writer, self.write_latency)
         words, strobes = ([getattr(port.wdata, name) for port in writers] for name in ("data", "we"))
         if self.injector:

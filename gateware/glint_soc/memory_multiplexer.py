@@ -37,7 +37,7 @@ class MemoryMultiplexer(LiteXModule):
 
     Reads and writes take turns: the direction changes if only commands of the other direction are pending, or after
     `settings.read_time` or `settings.write_time` clocks with pending commands of both. A change takes at least one clock without
-    commands; the least number of clocks from a read to a write, and from a write to a read, is LiteDRAM's.
+    commands; the minimum number of clocks from a read to a write, and from a write to a read, is that of LiteDRAM.
     """
 
     def __init__(self, settings, banks, refresher, dfi, interface):
@@ -47,7 +47,7 @@ class MemoryMultiplexer(LiteXModule):
 
         self.columns, self.activations = columns, activations = _Timer(timing.tCCD), _Timer(timing.tRRD)
         self.four_activations = four_activations = _Timer(timing.tFAW, tFAWController)
-        # Data of a write end later than its command: by the write latency and the length of the burst.
+        # The data of a write end after its command, by the write latency and the length of the burst.
         after_write = timing.tWTR + math.ceil(phy.cwl / phy.nphases) + (timing.tCCD or 0)
         self.after_writes, self.after_reads = after_writes, after_reads = _Timer(after_write), _Timer(phy.read_latency - 1)
 

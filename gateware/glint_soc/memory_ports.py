@@ -35,5 +35,5 @@ class MemoryPorts(LiteXModule):
 
     @staticmethod
     def _selected(turn, values):
-        """Returns the value whose bit of `turn` is set."""
+        """Returns the element of `values` at the index of the set bit of `turn`."""
         return reduce(or_, (Replicate(mine, len(value)) & value for mine, value in zip(turn, values)))

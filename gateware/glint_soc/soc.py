@@ -34,8 +34,8 @@ CLOCK_UNIT = 250e3
 """The clock must be a multiple of this, because the firmware converts between time and cycles by a whole number of cycles per 4 µs."""
 
 CPU_VARIANTS = ("lite", "standard", "full", "imac", "linux", "linux+no-dsp", "secure")
-"""LiteX's variants of VexRiscv with the instructions of the firmware, rv32im. `minimal` does not multiply. Those with a debug port, or
-with instructions of a block beside the CPU, are the same CPUs otherwise."""
+"""LiteX's variants of VexRiscv with the instructions of the firmware, rv32im. `minimal` does not multiply. Variants with a debug port, or
+with custom instructions (CFU), are otherwise equal to one of these."""
 
 CPU_VARIANT = "full"
 """The default variant of the CPU."""
@@ -160,7 +160,7 @@ class GlintSoC(SoCCore):
             origin=origin, size=2**(self.csr.address_width + 2), cached=False, decode=self.cpu.csr_decode))
         self.add_config("CSR_DATA_WIDTH", self.csr.data_width)
         self.add_config("CSR_ALIGNMENT", self.csr.alignment)
-        # The selections are already stored.
+        # `BusSelections` already stores the selections in flip-flops.
         self.bus.interconnect_register = False
         for region in self.bus.regions.values():
             region.decoder = lambda bus, decoder=region.decoder: self.bus_selections.stored(decoder(bus))

@@ -6,7 +6,7 @@
     write REGISTER VALUE ...    writes of a register
     address REGISTER OFFSET     write of an address in memory
     copy FROM TO                write of a register's value to another one
-    wait REGISTER MASK          until these bits are 0
+    wait REGISTER MASK          wait until these bits are 0
     expect REGISTER MASK VALUE  comparison of these bits
     errors REGISTER             comparison with the number of errors that memory answered
     picture OFFSET WIDTH HEIGHT place of a picture, RGB565

@@ -133,7 +133,7 @@ class VirtualSoC(PinSoC):
         """Stops the clocks of idle blocks and of idle memory banks, so that the simulation does not evaluate them.
 
         Free-running counters in blocks, such as the turn of an arbiter, stop with their clock. The cycle count of a pass therefore
-        differs by about 1 % from a SoC without stopped clocks. It differs as much between start times.
+        differs by about 1 % from a SoC without stopped clocks. It varies by as much with the time at which the pass starts.
         """
         add_sources(platform, "clock_gate")
         for name, block in list(vars(self).items()):

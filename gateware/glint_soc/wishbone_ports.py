@@ -13,7 +13,8 @@ from .round_robin import RoundRobin
 class WishbonePorts(MemoryPorts):
     """Joins `ports` to `bus`, a Wishbone master of the same width, with addresses of words.
 
-    One access takes place at a time, and takes two clocks more than memory does: a small and slow port. `err` ends an access as `ack` does.
+    One access takes place at a time, and takes two clocks more than memory does: the port is small but slow. `err` ends an access as `ack`
+    does.
     """
 
     def __init__(self, ports, origin):

@@ -87,8 +87,8 @@ class Netlist:
 
         A cell with a name in the source code belongs to the instance around it; any other cell to the instance of the net that
         it drives. If that net has no name, for example between LUTs, the cell belongs to the instance of most of its loads,
-        so a cell that several instances share is counted in one of them. In a flat source, the words of the names of nets
-        stand for instances.
+        so a cell that several instances share is counted in one of them. In a flat source file, the words of a net's name take the place of
+        the path of instances.
         """
         def path(name):
             *instance, name = name.split(".")

@@ -61,7 +61,7 @@ def slow_tables(rates):
 
 
 def budget_table(sizes, budget):
-    """Limits of the blocks."""
+    """Returns the table of the limits in the budget."""
     rows = [["block", *RESOURCES.values(), "to VexRiscv"]]
     for name in (size["name"] for size in sizes):
         limits, ratio = budget.limits(name), budget.ratio(name)

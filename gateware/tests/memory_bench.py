@@ -48,7 +48,7 @@ class Memory:
                 queue.append((earliest, *shown))
             if (yield port.wdata.ready):
                 if not (yield port.wdata.valid):
-                    raise AssertionError("the controller asked for data that were not there")
+                    raise AssertionError("the controller took write data that were not valid")
                 self.write(address, (yield port.wdata.data), (yield port.wdata.we))
             yield port.wdata.ready.eq(0)
             yield port.rdata.valid.eq(0)

@@ -95,7 +95,7 @@ def test_selected_slaves():
                 ours.append((yield slave.cyc))
                 theirs.append((yield other.cyc))
                 yield slave.ack.eq(0)
-            # A slave answers, or, for an address without a slave, the first one, as if it were LiteX's timeout.
+            # The selected slave answers. For an address without a slave the first slave answers, in place of LiteX's timeout.
             if pending and rng.random() < 0.5:
                 yield found[ours.index(1) if 1 in ours else 0][1].ack.eq(1)
             selected.append((ours, theirs))

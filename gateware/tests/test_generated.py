@@ -83,7 +83,7 @@ def test_suffixes(names, suffix):
 
 
 def test_variants_of_the_cpu():
-    """Checks that a build has the variant of the CPU that is asked for, and refuses one without the firmware's instructions."""
+    """Checks that a build has the requested variant of the CPU, and that a variant without the firmware's instructions is rejected."""
     soc = VirtualSoC(0, (), cpu="lite")
     soc.finalize()
     sources = {Path(source).name for source, *_ in soc.platform.sources}

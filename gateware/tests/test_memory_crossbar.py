@@ -43,7 +43,7 @@ class _Memory:
                 if (yield bank.valid):
                     queues[number].append(((yield bank.we), (yield bank.addr)))
                     if len(queues[number]) > _DEPTH + 1:
-                        raise AssertionError(f"bank {number} got a command for which its queue has no room")
+                        raise AssertionError(f"bank {number}: a command arrived while the queue was full")
                 yield bank.wdata_ready.eq(0)
                 yield bank.rdata_valid.eq(0)
             is_write, place = commands.popleft()
@@ -83,7 +83,7 @@ def _clients(ports, rng, pause, counts):
                     raise AssertionError(f"port {number} read {word:#x} in cycle {cycle}, not what was written before")
             if (yield port.wdata.ready):
                 if not data[number]:
-                    raise AssertionError(f"port {number} is asked for data without a command")
+                    raise AssertionError(f"port {number}: data were taken without a pending write command")
                 data[number].popleft()
             yield port.wdata.data.eq(data[number][0] if data[number] else rng.getrandbits(_BITS))
             idle = not (yield port.cmd.valid) or (yield port.cmd.ready)

@@ -186,7 +186,7 @@ def test_a_shorter_time_is_detected(name, clocks):
 
 
 def test_a_row_that_waits_gets_its_turn():
-    """Requests of one direction without end for three banks do not keep a bank with the other direction waiting."""
+    """Checks that continuous requests of one direction for three banks do not starve a bank with a request of the other direction."""
     rng, settings = random.Random(2), _settings(40e6)
     requests = [(rng.randrange(3), 5, rng.randrange(512), 0) for _ in range(300)]
     requests.insert(50, (3, 7, 1, 1))

@@ -75,7 +75,7 @@ def test_core(installed, name, equal):
                   environment=installed)
     found = [line.removeprefix("equal: ") for line in output.splitlines() if line.startswith("equal: ")]
     assert found[:len(equal)] == equal
-    # Blocks without memory get no errors from it.
+    # Cores whose blocks do not use memory report no errors of memory.
     assert [int(line.removesuffix(" errors of memory")) > 10 for line in found[len(equal):]] == [True] * bool(equal)
     assert output.endswith("passed\n")
 
@@ -89,7 +89,7 @@ def test_litex_soc(installed):
 
 
 def test_litex_program(installed):
-    """Draws a picture by a program in C on the processor of a LiteX SoC, which an interrupt tells the end."""
+    """Draws a picture with a C program on the processor of a LiteX SoC; an interrupt reports the end of a pass to the program."""
     output = _run(sys.executable, _EXAMPLES / "litex_cpu.py", _FOLDER / "litex_cpu", environment=installed)
     assert "equal: 320 x 180 pixels\n" in output
     assert output.endswith("passed\n")
@@ -145,8 +145,8 @@ def test_registers(tmp_path):
 
 @pytest.mark.parametrize("name", ["scanout", "sensors"])
 def test_read_by_yosys(tmp_path, name):
-    """Checks that Yosys reads a core, and that every bit in its top module has one driver. It also reads the larger engines' modules, in the
-    tests of the modules; together with a core they take too long here."""
+    """Checks that Yosys reads a core, and that every bit in its top module has one driver. Cores with larger engines would take too long
+    here; Yosys reads the modules of these engines in test_modules.py."""
     core = generate.description(yaml.safe_load((_EXAMPLES / f"{name}.yml").read_text()))
     generate.generate(core, tmp_path)
     top = core["name"]

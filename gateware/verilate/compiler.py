@@ -52,7 +52,7 @@ def model_sources(folder):
 
 
 def write_whole(parts, whole):
-    """Writes the file `whole`, which includes the files `parts`: to compile them apart takes longer."""
+    """Writes the file `whole`, which includes the files `parts`: separate compilation takes longer."""
     whole.write_text("".join(f'#include "{part}"\n' for part in parts))
     return whole
 
@@ -93,7 +93,7 @@ def link(objects, built, library):
 
 def runtime(waveforms=False):
     """Compiles the parts of Verilator that all models share, once. Returns the objects of its runtime, and options of the compiler with its
-    precompiled header, which a model with optimisation needs: to parse this header takes longer than to compile a small model."""
+    precompiled header, which is used for a model with optimisation: parsing this header takes longer than compiling a small model."""
     folder = GATEWARE.parent / "target" / "gateware" / ("runtime-waveforms" if waveforms else "runtime")
     sources = [_INCLUDE / f"{part}.cpp" for part in ("verilated", "verilated_threads", *(["verilated_vcd_c"] if waveforms else []))]
     objects = [object_of(source, folder) for source in sources]
