@@ -1,7 +1,7 @@
 // Proof of the joint AXI port of two readers and two writers, for any commands and words, and for a memory that accepts and answers at any
 // time, the answers of different ports in any order. Commands, addresses and words are numbered: each passes once, unchanged, in the order of
-// its port; a word follows the address of its own write. A port's address goes out within a few clocks in which the memory accepts one. A
-// writer counts as pending from its address to the answer.
+// its port; a word follows the address of its own write. A port's address is output within a few clocks in which the memory accepts an
+// address. A writer counts as pending from its address to the answer.
 
 `default_nettype none
 

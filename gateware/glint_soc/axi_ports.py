@@ -44,7 +44,7 @@ class AxiPorts(MemoryPorts):
             for number, port in enumerate(readers):
                 self.comb += [port.rdata.valid.eq(axi.r.valid & (axi.r.id == number)), port.rdata.data.eq(axi.r.data)]
         if writers:
-            # The numbers of the ports whose words follow, in the order of the addresses.
+            # The numbers of the writers whose words are sent next, in the order of their addresses.
             order = self.order = stream.SyncFIFO([("port", 4)], depth=most_writes)
             levels = [Signal(max=most_writes + 1) for _ in writers]
             turns = self._turns(axi.aw, writers, [

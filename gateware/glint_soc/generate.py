@@ -73,7 +73,7 @@ def description(given):
         raise ValueError(f"blocks {sorted(unknown)}: expected some of {', '.join(_BLOCKS)}")
     core["blocks"] = {name: _complete(name, core["blocks"][name] or {}, _BLOCKS[name]) for name in _BLOCKS if name in core["blocks"]}
     if "raymarch" in core["blocks"] and "triangle" not in core["blocks"]:
-        raise ValueError("raymarch: expected the block triangle too, which draws its pixels")
+        raise ValueError("raymarch: expected the block triangle too, which draws the raymarcher's pixels")
     if (triangle := core["blocks"].get("triangle", {})).get("smooth") and triangle["texture"]:
         raise ValueError("textures: expected no smooth shading, because the engine has one shader for groups")
     if not re.fullmatch(r"[a-z]\w*", str(core["name"])):
@@ -209,7 +209,8 @@ def generate(core, folder):
 def write(soc, design, core, video, folder):
     """Writes a SoC with the files `design` to `folder`, with its exports and its test bench. Returns the names of the written files.
 
-    `core` is a description, or what the test bench needs of it. A memory with the bus `host` is reached through the bus of the registers.
+    `core` is a description, or the part of a description that the test bench needs. A memory with the bus `host` is reached through the bus
+    of the registers.
     """
     registers, origin = vectors.registers(soc), core["memory"]["origin"]
     stimulus = []

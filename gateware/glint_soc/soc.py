@@ -75,15 +75,15 @@ class GlintSoC(SoCCore):
         if cpu not in CPU_VARIANTS:
             raise ValueError(f"CPU variant {cpu!r}: expected a variant with rv32im, one of {', '.join(CPU_VARIANTS)}")
         if "line" in blocks and not geometry:
-            raise ValueError("no geometry pass: expected a build without the block 'line', whose lines need it")
+            raise ValueError("no geometry pass: expected a build without the block 'line', because lines need this pass")
         if texture and smooth:
             raise ValueError("textures: expected a build without smooth shading, because the engine has one shader for groups")
         if texture and "triangle" not in blocks:
-            raise ValueError("textures: expected a build with the block 'triangle', whose meshes have them")
+            raise ValueError("textures: expected a build with the block 'triangle', because only meshes have textures")
         if fog and "triangle" not in blocks:
-            raise ValueError("fog: expected a build with the block 'triangle', whose meshes are in it")
+            raise ValueError("fog: expected a build with the block 'triangle', because this option adds fog to meshes")
         if "triangle" in blocks and not depths:
-            raise ValueError("no depths: expected a build without the block 'triangle', whose meshes need them")
+            raise ValueError("no depths: expected a build without the block 'triangle', because meshes need depths")
         if sys_clk_freq % CLOCK_UNIT:
             raise ValueError(f"system clock of {sys_clk_freq / 1e6} MHz: expected a multiple of {CLOCK_UNIT / 1e6} MHz")
         self.draws_triangles = "triangle" in blocks

@@ -49,7 +49,8 @@ _QUARTER = ("quarter", "right", "lower")
 
 def _quarter(offset, description):
     """The fields that select a quarter of a picture, from the bit `offset` on."""
-    texts = (description, "With `quarter`: the right one.", "With `quarter`: the lower one.")
+    texts = (description, "With `quarter`: 1 selects a right quarter, 0 a left quarter.",
+             "With `quarter`: 1 selects a lower quarter, 0 an upper quarter.")
     return [CSRField(name, offset=offset + i, description=text) for i, (name, text) in enumerate(zip(_QUARTER, texts))]
 
 
@@ -487,8 +488,8 @@ def _read_port(port):
 
 
 def _address(port):
-    """Returns the address of a port with the width in the RTL. The highest bits are 0 for a smaller memory, because the regions of a pass are
-    checked to be within memory; in a larger memory, the port's other bits stay 0."""
+    """Returns the port's address, extended or shortened to the width in the RTL. For a smaller memory the highest bits are 0, because the
+    regions of a pass are checked to be within memory. For a larger memory, the further bits of the port stay 0."""
     address = port.cmd.addr[:_ADDRESS_BITS]
     return Cat(address, Signal(_ADDRESS_BITS - len(address))) if len(address) < _ADDRESS_BITS else address
 

@@ -58,7 +58,7 @@ class Platform(GenericPlatform):
         self.finalize(fragment)
         design = self.get_verilog(fragment, name=build_name, special_overrides=sim_special_overrides)
         if design.data_files:
-            raise ValueError(f"a memory is initialized from a file, which ties the build to a path: {design.data_files}")
+            raise ValueError(f"expected no memory with contents from a file, because the build would contain its path: {design.data_files}")
         # Removes the lines with the build time, so that equal SoCs give equal files.
         lines = design.main_source.splitlines(keepends=True)
         with open(os.path.join(build_dir, f"{build_name}.v"), "w") as verilog:

@@ -80,7 +80,7 @@ def main():
     what.add_argument("--tree", type=int, metavar="DEPTH", help="print the cells of the instances in the blocks, down to DEPTH")
     what.add_argument("--scenes", type=Path, metavar="FILE", help="measure the builds for scenes that FILE describes")
     parser.add_argument("--json", action="store_true", help="print JSON")
-    parser.add_argument("--write", action="store_true", help="write the page in docs")
+    parser.add_argument("--write", action="store_true", help="write docs/resources.md, or with --scenes docs/scene-builds.md")
     arguments = parser.parse_args()
     logging.disable(logging.INFO) # LiteX logs each step
     start, budget = time.monotonic(), Budget.read()

@@ -78,7 +78,7 @@ def test_refusals(expected, csrs, counters):
 @pytest.mark.parametrize(("names", "suffix"), [
     (["geometry_error", "raster_error"], "error"), (["size", "size"], "size"), (["frame_size", "size"], "size"), (["mistake", "stake"], "")])
 def test_suffixes(names, suffix):
-    """Checks the common last words of names."""
+    """Checks the search for the last words that names have in common."""
     assert pac.common_suffix(names) == suffix
 
 

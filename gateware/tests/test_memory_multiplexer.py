@@ -52,7 +52,7 @@ class _Memory:
     def __init__(self, settings):
         timing, phy = settings.timing, settings.phy
         after_write = phy.cwl + timing.tCCD
-        # The least number of clocks between two commands to the same bank, and to any two banks.
+        # The minimum number of clocks between two commands to the same bank, and to any two banks.
         self.same = {("activate", "column"): timing.tRCD, ("activate", "precharge"): timing.tRAS, ("activate", "activate"): timing.tRC,
                      ("precharge", "activate"): timing.tRP, ("write", "precharge"): after_write + timing.tWR}
         self.any = {("activate", "activate"): timing.tRRD, ("column", "column"): timing.tCCD, ("read", "write"): phy.read_latency,
@@ -178,7 +178,7 @@ def test_accesses_and_times(case, gap):
 
 @pytest.mark.parametrize("name, clocks", (("tRRD", 3), ("tFAW", 8), ("tCCD", 1), ("tWTR", 0)))
 def test_a_shorter_time_is_detected(name, clocks):
-    """Checks the commands of a multiplexer with a shorter time against the right times."""
+    """Checks the commands of a multiplexer with a shorter time against the correct times."""
     clock, changes = _CASES["long times"]
     shorter = _settings(clock, **changes | {name: clocks})
     _, memory, _ = _run(MemoryMultiplexer, shorter, _requests(random.Random(11), 120, longest=2), checked=_settings(clock, **changes))

@@ -24,7 +24,7 @@ _EXAMPLES = GATEWARE / "examples"
 _FOLDER = GATEWARE.parent / "target" / "gateware" / "package"
 _INSTALLED = _FOLDER / "installed"
 
-# The package's own packages are pinned in requirements.txt; these are only for the example of the Arty A7.
+# Needed only by the example of the Arty A7; requirements.txt pins the other packages.
 _BOARDS = ["litex-boards==2023.12", "liteeth==2024.12"]
 
 
@@ -120,8 +120,8 @@ def test_arty(installed, engines, modules, interrupts):
 
 
 def test_registers(tmp_path):
-    """Checks that the registers of a core are at the same places as in Glint's own SoC, so that its drivers fit, and that the exports
-    have these places."""
+    """Checks that the registers of a core have the same addresses as in Glint's own SoC, so that its drivers work, and that the exports
+    contain these addresses."""
     names = ("scanout", "triangle", "raymarch", "gesture", "i2c")
     core, full = generate.description({"blocks": {name: {} for name in names}}), packages.full_soc()
     soc = generate.Core(core)
@@ -187,7 +187,7 @@ def test_refusals(text, expected):
 
 
 def test_errors_of_memory():
-    """Counts the accesses that an AXI memory answers with an error; the port goes on, and each port gets its own words."""
+    """Counts the accesses that an AXI memory answers with an error; all accesses continue, and each port receives its own words."""
     rng = random.Random(3)
     reader, other, writer = (LiteDRAMNativePort(mode, 17, 128) for mode in ("read", "read", "write"))
     dut = AxiPorts([reader, other, writer], 0x4000_0000)

@@ -91,7 +91,7 @@ def test_complete(board):
     """Checks that each instantiated module exists, including the FPGA's primitives, and has the connected ports."""
     sources = re.findall(r"^read_verilog (?:.* )?(\S+)$", board.ys, re.M)
     run_yosys(f"read_verilog -lib +/lattice/cells_sim_ecp5.v +/lattice/cells_bb_ecp5.v; hierarchy -check -top {_TOP}",
-              sources, folder=_GATEWARE) # where its memory images are
+              sources, folder=_GATEWARE) # the folder with the memory images
 
 
 @pytest.mark.parametrize("offset", range(5))

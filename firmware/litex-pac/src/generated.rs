@@ -4635,7 +4635,7 @@ pub mod triangle {
             Self(self.0 & !(0x1 << 11) | (value as u32 & 0x1) << 11)
         }
 
-        /// `right`, bit 12: With `quarter`: the right one.
+        /// `right`, bit 12: With `quarter`: 1 selects a right quarter, 0 a left quarter.
         #[inline]
         #[must_use]
         pub const fn right(self) -> bool {
@@ -4649,7 +4649,7 @@ pub mod triangle {
             Self(self.0 & !(0x1 << 12) | (value as u32 & 0x1) << 12)
         }
 
-        /// `lower`, bit 13: With `quarter`: the lower one.
+        /// `lower`, bit 13: With `quarter`: 1 selects a lower quarter, 0 an upper quarter.
         #[inline]
         #[must_use]
         pub const fn lower(self) -> bool {
@@ -4905,7 +4905,7 @@ pub mod triangle {
             Self(self.0 & !(0x1 << 13) | (value as u32 & 0x1) << 13)
         }
 
-        /// `right`, bit 14: With `quarter`: the right one.
+        /// `right`, bit 14: With `quarter`: 1 selects a right quarter, 0 a left quarter.
         #[inline]
         #[must_use]
         pub const fn right(self) -> bool {
@@ -4919,7 +4919,7 @@ pub mod triangle {
             Self(self.0 & !(0x1 << 14) | (value as u32 & 0x1) << 14)
         }
 
-        /// `lower`, bit 15: With `quarter`: the lower one.
+        /// `lower`, bit 15: With `quarter`: 1 selects a lower quarter, 0 an upper quarter.
         #[inline]
         #[must_use]
         pub const fn lower(self) -> bool {

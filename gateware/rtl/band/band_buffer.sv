@@ -24,8 +24,8 @@
 // every pixel must then be drawn for both eyes. Without DEPTHS there is no depth memory: each stored depth counts as 0, so every lane of
 // the mask is written. Throughput one group per clock; band_pipe explains the hazards.
 //
-// With BLEND, pixels can be blended with the stored colours: first a group asks for the lanes that pass the depth test, then come groups
-// of one blended pixel each (band_pipe). From the answer until the last of these groups, `behind` is the stored colour in this row of the
+// With BLEND, pixels can be blended with the stored colours: first a group asks for the lanes that pass the depth test, then groups of one
+// blended pixel each follow (band_pipe). From the answer until the last of these groups, `behind` is the stored colour in this row of the
 // lane that `behind_lane` selected in the previous clock; for a pixel not yet written it is `band_clear`, which must be constant while
 // groups are blended. After the answer `group_ready` stays high until the last blended pixel, because the lanes of these pixels are not in
 // the pipe. `group_row` must hold from the group that asks until then.

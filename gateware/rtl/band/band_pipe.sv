@@ -12,11 +12,11 @@
 // of the three groups before it is held until at least four clocks after that group. Groups that share a row but no lane, as
 // neighbouring triangles do along their common edge, pass without a stall, because each lane is a separate memory.
 //
-// With BLEND a pixel can be blended with the stored colour of its place, in three steps. First comes a group with `group_asks`: it has a
-// depth test, but writes nothing. 4 clocks after its `read_row`, `answer_lanes` (valid with `answer_valid`) has the lanes that pass. Then
-// come the blended pixels, groups with `group_blended`, whose lanes are written without a depth test. The stored depth code stays; that of
-// a pixel not yet written becomes 0. No other groups come in between, so the blended pixels, each in a lane of its own, are not held. The
-// sky is written in the same way, in groups of eight pixels.
+// With BLEND a pixel can be blended with the stored colour of its place, in three steps. First, a group with `group_asks` has a depth test,
+// but writes nothing. 4 clocks after its `read_row`, `answer_lanes` (valid with `answer_valid`) is the mask of the lanes that pass. Then
+// the blended pixels arrive as groups with `group_blended`, whose lanes are written without a depth test. The stored depth code stays; the
+// depth code of a pixel not yet written becomes 0. No other groups may arrive in between, so the blended pixels, each in a different lane,
+// are not held. The sky is written in the same way, in groups of eight pixels.
 //
 // The input is a valid/ready stream; `group_ready` comes from registers and from `open`, which admits groups. `empty` is high when no group
 // is in the pipeline; a read of a row then returns the pixels of all accepted groups.

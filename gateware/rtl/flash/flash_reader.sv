@@ -1,6 +1,6 @@
 // Reads words of 32 bits from a SPI flash with four data lines.
 //
-// The command is 0x6b, fast read with quad output: command and address go out on line 0, eight clocks pass, and the bytes are received on
+// The command is 0x6b, fast read with quad output: command and address are sent on line 0, eight clocks pass, and the bytes are received on
 // all four lines, the high half of each byte first. The flash continues with the next address while it is selected, so a request for the
 // next word needs no new command:
 //

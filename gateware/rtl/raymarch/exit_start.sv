@@ -11,7 +11,7 @@
 // The prism is a constant of the frame. For each eye, and for each axis in both directions, it consists of: the distance of the plane that
 // bounds the prism (`distances`), whether there is such a plane (`there`), the interval above this plane (`nexts`), whether this interval
 // is above the solid (`last`), and whether a ray in this direction leads away from the solid (`away`). `choice`, for each eye, has the
-// meaning of `choice` in exit_borders. For an eye in no such prism there are no planes; its rays start at the near plane.
+// meaning of `choice` in exit_borders. If the eye is in no such prism, there are no planes, and the rays start at the near plane.
 //
 // Latency 22 clocks, throughput one ray per clock, no handshake: `in_valid` travels with the ray. The constants must hold.
 

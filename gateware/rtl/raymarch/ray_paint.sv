@@ -187,8 +187,8 @@ module ray_paint #(
         wire _unused = &{1'b0, lit_13[25:16], lit_13[7:0], faded[25:16], faded[7:0]};
     end
 
-    // In clock 18 a full channel is 31 or 63 steps, with fraction bits; in clock 19 the colour is in the format of the frame buffer: RGB565,
-    // rounded by the place of the pixel, or with `stereo` two luminances.
+    // In clock 18 a full channel is 31 or 63 steps, with fraction bits; in clock 19 the colour is in the format of the frame buffer:
+    // RGB565, rounded with the threshold of the pixel's position, or with `stereo` two luminances.
     logic [2:0][7:0] scaled_18;
     logic [1:0]      line_17, column_17;
     logic [2:0]      threshold_18;

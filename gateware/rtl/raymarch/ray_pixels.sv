@@ -2,8 +2,8 @@
 //
 //   columns, lines ─▶ D = first + x·across + y·down, exactly, by 32-bit additions
 //
-// Pixels come band by band, each band line by line from the top, each line from the left. With `stereo` each line comes first for the
-// left eye, then for the right eye.
+// Pixels are output band by band, each band line by line from the top, each line from the left. With `stereo` each line is output first for
+// the left eye, then for the right eye.
 //
 // `start` (one clock, not while `busy`) begins the frame; the parameters must hold until the frame has ended. `valid` is high in each clock
 // with a pixel; a pixel needs a `credit`. `busy` falls after the last pixel. `rst` ends the frame.

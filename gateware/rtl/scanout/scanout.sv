@@ -47,7 +47,7 @@ module scanout #(
     // Free-running counters.
     output logic [31:0]             frames,
     output logic [31:0]             underflows,
-    // Events, one clock late: memory refused a command, a word of a line came, a source line is complete.
+    // Events, one clock late: memory refused a command, a word of a line has arrived, a source line is complete.
     output logic                    stalled,
     output logic                    word_came,
     output logic                    line_ended,

@@ -4,7 +4,7 @@
 // clock; data arrives later, in order, and without back-pressure. The whole slot is free before the first command, so each word is stored
 // in the clock in which it arrives.
 //
-// Work side: `request` is a level, which holds with `line` and `slot` until `done` is high for one clock. While `enable` is low, a request
+// Requests: `request` is a level, which holds with `line` and `slot` until `done` is high for one clock. While `enable` is low, a request
 // ends at once without reading memory. A request that is withdrawn early ends without `done`. Latency: 2 clocks from `request` to the first
 // command, 1 clock from the last word to `done`.
 
@@ -22,7 +22,7 @@ module scanout_fetch #(
     input  wire                     enable,
     input  wire  [ADDRESS_BITS-1:0] base,
     input  wire  [1:0]              shift,
-    // Work.
+    // Request.
     input  wire                     request,
     input  wire  [Y_BITS-1:0]       line,
     input  wire                     slot,

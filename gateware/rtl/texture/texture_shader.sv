@@ -12,7 +12,7 @@
 // sampler, and until texture_loader has read the new texture's header and palette.
 //
 // The source of the groups is a pipeline that cannot be stopped. The pipeline sends groups only while `room` is high; a group arrives
-// FLIGHT clocks after it is sent (see pipeline_fifo). Groups stay in order. A group without an opaque pixel is dropped. Output: a
+// FLIGHT clocks after it is sent (see pipeline_fifo). Groups stay in order. A group whose texels are all transparent is dropped. Output: a
 // valid/ready stream. `idle` is high while no group is inside. `forget` (one clock, while idle) discards the texels and the texture of
 // earlier frames. The colours of textures are rounded to RGB565; with `dither`, the threshold depends on the position of the pixel.
 // `in_line` has the lowest bits of the number of the picture's line. With FRACTIONS, the colours of textures are not rounded yet, and all
@@ -131,7 +131,8 @@ module texture_shader #(
     assign ends  = half || mask[7:4] == '0;
     assign sends = state == SEND && waiting_valid && same && credit && !follows;
 
-    // A quad of a bilinear texture with pixels in both pairs is two items of the sampler, the second of which follows a clock later.
+    // With bilinear filtering, a quad with pixels in both pairs is two items of the sampler; the second item follows one clock after the
+    // first.
     assign both = sampler.bilinear && quad[1:0] != '0 && quad[3:2] != '0;
 
     assign waiting_gone = sends && ends;
