@@ -168,7 +168,7 @@ MUTATIONS = {
         _flush("colour_pkg::average(pair, previous, t0[i])", "colour_pkg::average(pair, pair, t0[i])", "words_in_order"),
         # Fault: both halves of a word are those of its first two rows.
         _flush("is_left  <= corner_word == 2'd1;", "is_left  <= corner_word == 2'd3;", "words_in_order"),
-        # Fault: the lower row of a word is read in the line of the upper one.
+        # Fault: the lower row of a word is read in the line of the upper row.
         _flush("corner[0] ? back : down", "1'b1", "words_in_order"),
         _flush("(span_ends ? ROW_BITS'(gap) : '0)", "ROW_BITS'(0)", "in_their_places"),
         _flush(".in(address), .out(address_sums)", ".in(address_2), .out(address_sums)", "in_their_places"),

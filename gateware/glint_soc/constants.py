@@ -20,7 +20,7 @@ class Size:
 
     @property
     def name(self):
-        """Name of the size's register value."""
+        """Name of this size as a value of a register field."""
         return f"w{self.width}"
 
     @property

@@ -1,6 +1,6 @@
 """Descriptions of the flat fields of the raymarcher, one for each.
 
-`cargo xtask pac` generates `rtl/raymarch/fields_pkg.sv` (masks) from the descriptions. They also determine the values of `solid.kind` and
+`cargo xtask pac` generates `rtl/raymarch/fields_pkg.sv` (masks) from these descriptions. They also determine the values of `solid.kind` and
 the bits of `caps.flat` (and with them the PAC and the checks of the driver), the builds, and the variants that are tested and measured.
 docs/adding-a-field.md lists the steps to add a field.
 """

@@ -67,7 +67,7 @@ class Scanout(LiteXModule):
         self._fb_current = CSRStatus(32, name="fb_current", description="Byte address of the frame that is shown, or, in "
             "vertical blanking, of the next frame. A frame buffer that is neither this nor `fb_next` is free for drawing.")
         self._frame_count = CSRStatus(32, name="frame_count", description="Vertical blankings since reset, modulo 2^32.")
-        self._underflow_count = CSRStatus(32, name="underflow_count", description="Source lines that came too late from memory, "
+        self._underflow_count = CSRStatus(32, name="underflow_count", description="Source lines that arrived too late from memory, "
             "modulo 2^32. The previous line is shown again, or black in the first line.")
         # A reset clears the two counters above, but not the following counters.
         self.growing = Counters(self, {

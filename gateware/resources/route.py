@@ -142,8 +142,8 @@ endmodule
 
 
 def split_products(module, operand_bits=18):
-    """Replaces each product in a flat netlist that has an operand of more than `operand_bits` bits by products that fit, a register
-    after each of them, and the sum of the registers. The clock of the registers is the first port of the wrapper."""
+    """Replaces each product with an operand of more than `operand_bits` bits, in a flat netlist, by products that fit, a register after
+    each of these products, and the sum of the registers. The clock of the registers is the first port of the wrapper."""
     clock = next(iter(module["ports"].values()))["bits"][0]
     wires = itertools.count(1 + max(bit for net in module["netnames"].values() for bit in net["bits"] if isinstance(bit, int)))
     for name, cell in list(module["cells"].items()):

@@ -1,4 +1,4 @@
-"""Resources of a module, or of the SoC, on a 7-series FPGA, by Yosys: no place and route, no vendor tool.
+"""Resources of a module, or of the SoC, on a 7-series FPGA, by Yosys, without place and route and without a vendor tool.
 
 `python -m resources.size NAME` prints the resources of a block as JSON.
 """

@@ -2734,7 +2734,7 @@ pub mod scanout {
             unsafe { Register::at(0xf000_4828) }
         }
 
-        /// `underflow_count`, 32 bits: Source lines that came too late from memory, modulo 2^32. The previous line is shown again, or black in the first line.
+        /// `underflow_count`, 32 bits: Source lines that arrived too late from memory, modulo 2^32. The previous line is shown again, or black in the first line.
         #[inline]
         #[must_use]
         pub const fn underflow_count(&self) -> Register<u32, ReadOnly> {
@@ -3115,7 +3115,7 @@ pub mod scanout {
     pub struct Counters {
         /// Vertical blankings since reset, modulo 2^32.
         pub frame_count: u32,
-        /// Source lines that came too late from memory, modulo 2^32. The previous line is shown again, or black in the first line.
+        /// Source lines that arrived too late from memory, modulo 2^32. The previous line is shown again, or black in the first line.
         pub underflow_count: u32,
         /// Clock cycles of line fetches, modulo 2^32.
         pub cycles_busy: u32,

@@ -8,7 +8,8 @@
 // next accepted token. The settings may come from any domain, because software only changes them while the engine is off. `beat` changes
 // its level every 8 clocks of `pclk`, which shows that this clock runs.
 //
-// Latency 3 clocks of `pclk` from the last byte of a pixel to its token. No reset is needed, because the end of a frame ends every state.
+// Latency 3 clocks of `pclk` from the last byte of a pixel to its token. No reset is needed, because the end of a frame restores the
+// initial state.
 
 `default_nettype none
 

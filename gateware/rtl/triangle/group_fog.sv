@@ -30,7 +30,7 @@ module group_fog #(
     input  wire                    in_valid,
     output logic                   in_ready,
     input  wire  [BESIDE_BITS-1:0] in_beside,
-    input  wire  [1:0]             in_line,    // the lowest bits
+    input  wire  [1:0]             in_line,    // lowest bits of the line's number
     input  wire  [7:0]             in_mask,
     input  wire  [7:0][17:0]       in_codes,
     input  wire  [7:0][23:0]       in_colours,

@@ -224,7 +224,7 @@ module raster_unit #(
     logic [7:0]      group_mask;
     logic [8*18-1:0] group_codes;
     logic [8*16-1:0] group_colours;
-    // Blended pixels, of triangles alone.
+    // Blended pixels. Only triangles are blended.
     logic            drawn_asks, drawn_blended, group_asks, group_blended, answer_valid;
     logic [7:0]      answer_lanes;
     logic [2:0]      behind_lane;
@@ -241,7 +241,7 @@ module raster_unit #(
         logic [9:0] read_row;
         logic       read_odd;
 
-        // `stray` is high for a descriptor that is skipped: with groups outside of the picture, or of a triangle without TRIANGLES.
+        // `stray` is high for a descriptor that is skipped, because its groups are outside of the picture or the build has no TRIANGLES.
         logic stray, list_damaged;
         // `is_line` is high for a piece of a line, and `piece_taken` is high in the clock after line_raster has taken the piece.
         logic is_line, piece_taken, line_idle;

@@ -7,10 +7,10 @@
 //
 // Native read ports of the memory serve triangles, vertices, the raster unit and, with TEXTURE, texels. LiteDRAM only lets a port switch to
 // another memory bank when the previous bank is idle, four clocks later, so each of these streams has its own port. There are four write
-// ports: one for descriptors, one for lists, one for the frame's words in even memory banks, and one for its words in odd ones. `cancel` (one
-// clock, at any time) ends both passes. After it, `status.ready` rises when no read is outstanding, memory has taken all words, and the
-// band buffer is clear; then either unit may start. geometry_unit and raster_unit explain their parameters and results. `events` holds the
-// increment of each counter, some clocks late.
+// ports: one for descriptors, one for lists, one for the frame's words in even memory banks, and one for its words in odd banks. `cancel`
+// (one clock, at any time) ends both passes. After `cancel`, `status.ready` rises when no read is outstanding, memory has taken all words,
+// and the band buffer is clear; then either unit may start. geometry_unit and raster_unit explain their parameters and results. `events`
+// holds the increment of each counter, some clocks late.
 //
 // SMOOTH builds smooth shading, which the flag `smooth` of the geometry pass enables for a frame: the light of the vertices is
 // interpolated with perspective correction, which takes a division per pixel (docs/formats/triangle.md, "Smooth shading"). Descriptors then
