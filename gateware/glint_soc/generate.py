@@ -80,7 +80,8 @@ def description(given):
         raise ValueError(f"name {core['name']!r}: expected small letters, digits and underscores")
     size, origin = core["memory"]["size"], core["memory"]["origin"]
     if size not in (1 << bits for bits in range(21, 28)) or origin % size:
-        raise ValueError(f"memory of {size} bytes at {origin:#x}: expected a power of two from 2 MiB to 128 MiB, and a multiple of it")
+        raise ValueError(f"memory of {size} bytes at {origin:#x}: expected a power of two from 2 MiB to 128 MiB, and an origin that is a "
+                         "multiple of the size")
     return core
 
 

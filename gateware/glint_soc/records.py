@@ -140,7 +140,7 @@ TEXTURES_BIT = 31
 SEGMENT_END = Record("segment_end", "End point of a segment.", (
     Field("x", 20, "x, s12.8"), _reserved(12), Field("y", 20, "y, s12.8"), _reserved(12),
     Field("w", 24, "depth code before its rounding, u18.6"), _reserved(8),
-    Field("side", 16, "colour, RGB565, in the first end; bias in the second one"), _reserved(16),
+    Field("side", 16, "colour, RGB565, in the first end; bias in the second end"), _reserved(16),
 ), rtl="segment_end_t", bytes=False)
 
 STEPS = Record("steps", "Increments of an edge function.", (

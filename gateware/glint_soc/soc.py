@@ -206,5 +206,5 @@ class GlintSoC(SoCCore):
             self.raymarch = Raymarcher(self.platform, self.fields, self.triangle)
 
     def _port(self, mode):
-        """Returns a memory port for an accelerator."""
+        """Returns a memory port of 128 bits for an accelerator; `mode` is `"read"` or `"write"`."""
         return self.sdram.crossbar.get_port(mode, _PORT_BITS)

@@ -68,7 +68,7 @@ class CRG(LiteXModule):
 
 
 class Ulx3sSoC(GlintSoC):
-    """The SoC on the board."""
+    """The SoC with the clocks, SDRAM, video output and pins of the board."""
 
     # The flash of this board is not set to four data lines, because the FPGA is configured through one line. The board has no
     # digit displays.

@@ -92,7 +92,7 @@ def _without_write_bitslip(strobe):
 
 
 class UrbanaSoC(GlintSoC):
-    """The SoC of the Urbana board."""
+    """The SoC with the clocks, DDR3 memory, video output and pins of the board."""
 
     def __init__(self, build_id, blocks, sys_clk_freq=SYS_CLK_FREQ, **options):
         platform = Platform()

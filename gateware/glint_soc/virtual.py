@@ -119,7 +119,7 @@ class PinSoC(GlintSoC):
 
 
 class VirtualSoC(PinSoC):
-    """SoC of the virtual board."""
+    """The SoC with the model of the DDR3 memory, and with clocks that stop for idle blocks."""
 
     def __init__(self, build_id, blocks, **options):
         PinSoC.__init__(self, build_id, blocks, **options)

@@ -1,4 +1,4 @@
-"""Names of the measured blocks."""
+"""Lists of the blocks that are measured, and the order of their rows in tables."""
 
 from glint_soc.rtl import RTL
 

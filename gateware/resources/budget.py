@@ -67,7 +67,7 @@ class Budget:
 
     @classmethod
     def parse(cls, text):
-        """Reads the text of the file."""
+        """Returns the limits from the text of a budget file."""
         try:
             return cls(**tomllib.loads(text))
         except TypeError as error:
@@ -75,7 +75,7 @@ class Budget:
 
     @classmethod
     def read(cls):
-        """Reads the file."""
+        """Returns the limits in `gateware/budget.toml`."""
         return cls.parse(PATH.read_text())
 
     def limits(self, block):

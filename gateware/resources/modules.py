@@ -40,7 +40,7 @@ class Core:
 
     @property
     def name(self):
-        """The name of the block."""
+        """Name of the block in tables and in the budget."""
         return f"vexriscv_{self.variant}"
 
     @property
@@ -119,7 +119,7 @@ RTL_MODULES = [
                   "triangle_control_lines_alone": _LINES_ALONE, "triangle_control_no_geometry": _NO_GEOMETRY},
     ),
 ]
-"""The modules under test."""
+"""The RTL modules that have tests, each with its builds."""
 
 CORES = [Core(variant) for variant in CPU_VARIANTS]
 

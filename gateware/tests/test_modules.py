@@ -12,7 +12,7 @@ from verilate.programs import run_verilator
 
 _BUILDS = [pytest.param(module, name, parameters, id=name) for module in RTL_MODULES for name, parameters in module.builds().items()]
 
-# Modules that are part of another one under test. Yosys reads them with it.
+# Modules that are parts of another module under test. Yosys reads them together with that module.
 _PARTS = {source.stem for module in RTL_MODULES for source in module.sources if source.stem != module.top}
 _WHOLE = [module for module in RTL_MODULES if module.top not in _PARTS]
 

@@ -176,7 +176,7 @@ def test_options(tmp_path, rest):
     ("{blocks: {triangle: {smooth: 1}}}", "smooth 1 of triangle: expected a bool"),
     ("{blocks: {triangle: {}}, name: 3d}", "name '3d': expected small letters"),
     ("{blocks: {triangle: {}}, memory: {size: 0x10000000}}", "memory of 268435456 bytes at 0x40000000: expected a power of two"),
-    ("{blocks: {triangle: {}}, memory: {origin: 0x41000000}}", "and a multiple of it"),
+    ("{blocks: {triangle: {}}, memory: {origin: 0x41000000}}", "and an origin that is a multiple of the size"),
     ("{blocks: {triangle: {smooth: true, texture: true}}}", "textures: expected no smooth shading"),
 ])
 def test_refusals(text, expected):

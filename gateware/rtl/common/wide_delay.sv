@@ -3,7 +3,8 @@
 //
 //   in ─▶ ring of CLOCKS - 1 places in LUT memory ─▶ output register ─▶ out
 //
-// CLOCKS is at least 3. With `zero` in a clock, `out` is 0 in the next one in place of the word: a reset of its register takes no LUT.
+// CLOCKS is at least 3. If `zero` is high, `out` is 0 in the next clock in place of the word: the reset of the output register takes no
+// LUT.
 
 `default_nettype none
 

@@ -65,7 +65,7 @@ module line_setup (
     assign fetch_b = at[1] || at[3] || at[10] || at[11] || at[4] && left || at[5] && !left || at[6] && up || at[7] && !up
                   || at[14] && back_minor || at[15] && !back_minor || at[16] && back_major || at[17] && !back_major;
 
-    // A position is the coordinate less 1: while `locates` is high, the subtractor subtracts 1 instead of the previous coordinate.
+    // A position is the coordinate minus 1: while `locates` is high, the subtractor subtracts 1 instead of the previous coordinate.
     assign locates    = at[11] || at[12] || at[13] || at[14];
     assign difference = {fetched[19], fetched} + ~{previous[19], previous} + 21'(!locates);
 
@@ -88,7 +88,7 @@ module line_setup (
         end
     end
 
-    // Coordinates of an end point along both axes, less 1; `on_minor` and `on_major` are also mirrored. The high bits are the index of the
+    // Coordinates of an end point along both axes, minus 1; `on_minor` and `on_major` are also mirrored. The high bits are the index of the
     // pixel, the low eight bits the position in the pixel.
     logic [20:0] minor_place, major_place, on_minor, on_major;
     logic [6:0]  beside;

@@ -6,7 +6,7 @@
 // corner; the origin of the planes' coordinates is the solid's centre. `there[i]` is high if a plane perpendicular to axis i bounds the
 // prism; `next[i]` is the interval above this plane, `above[i]` is high if this interval is above the solid, and `at[i]` is the plane's
 // coordinate. The ray leaves by the last of the planes if `choice[1]` is high, by the first if `choice[0]` is high, and otherwise by the
-// second of three. Without any plane the point is in the solid (`hit`), or the ray has left the solid for good (`gone`).
+// second of three. Without any plane the point is in the solid (`hit`), or the ray has left the solid and cannot enter it again (`gone`).
 //
 // A sponge is the intersection of three extruded Sierpinski carpets: a point is outside if at some level two of its ternary digits are
 // 1. The point is then in a prism between the planes of these two cells, and the prism goes through the whole sponge. For cubes, the

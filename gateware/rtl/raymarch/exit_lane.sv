@@ -423,7 +423,8 @@ module exit_lane #(
         .clk, .exits(exit_19), .there(there_19), .choice(choice_19), .t(exit_21), .axis(exit_axis_21), .crossed(crossed_21)
     );
 
-    // A ray ends when it leaves the solid for good or when its exit is beyond the limit, so no T in the ring exceeds the limit.
+    // A ray ends when it leaves the solid and cannot enter it again, or when its exit is beyond the limit, so no T in the ring exceeds the
+    // limit.
     always_ff @(posedge clk) begin
         exit_22      <= exit_21[exit_pkg::T_BITS-1:0];
         exit_axis_22 <= exit_axis_21;

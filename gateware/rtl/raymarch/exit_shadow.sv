@@ -5,7 +5,7 @@
 //         └─ any other end ─▶ skid_buffer ──────────────────────────────────┘
 //
 // For a hit on a face that the light shines on, a second ray is sent from the face to the light. The hit is in the shadow if this ray hits
-// the solid. The field `height` of a hit in the shadow becomes 1, of any other hit 0. Ends may overtake each other. The light is infinitely
+// the solid. The field `height` of a hit becomes 1 in the shadow and 0 in the light. Ends may overtake each other. The light is infinitely
 // far away, so all rays to it have the same direction, and the magnitudes of its components and their reciprocals are constants of the
 // frame.
 //

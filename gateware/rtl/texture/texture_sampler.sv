@@ -181,7 +181,7 @@ module texture_sampler #(
         assign out_texels[2*j + 1] = second_colours[j];
     end
 
-    // A pair of a bilinear texture is in lanes 0 and 1, or 2 and 3.
+    // With bilinear filtering, a pair is in lanes 0 and 1, or 2 and 3.
     assign out_opaque = sampler.bilinear ? {opaque, opaque} : {seconds_opaque[1], opaque[1], seconds_opaque[0], opaque[0]};
 
     wire _unused = &{1'b0, sampler.last_level, sampler.blend};

@@ -4,8 +4,8 @@
 //
 // Each gradient needs three products, for which it is split into parts of 17, 17 and 6 bits from the low end; bits 8 to 39 of the products'
 // sum are exact. The module `setup` drives `count`, the number of the clock in a beat (the time of a triangle in a stage of `setup`, 11
-// clocks or more), and `next_is_odd`, the lowest bit of `count` in the next clock. The inputs must hold during a beat, px and py also in the
-// clock before; the result is valid from clock 9 on.
+// clocks or more), and `next_is_odd`, the lowest bit of `count` in the next clock. The inputs must hold during a beat, px and py also in
+// the previous clock; the result is valid from clock 9 on.
 
 `default_nettype none
 

@@ -53,7 +53,7 @@ module vertex_cache #(
     localparam int unsigned ENTRY_BITS = EPOCH_BITS + TAG_BITS;
     localparam int unsigned RECORDS    = 64;
     localparam int unsigned PLACES     = 16; // entries for vertices whose triangle is incomplete
-    localparam int unsigned TRIANGLES  = 32; // more than 29, the most triangles in RECORDS, PLACES and at both ends
+    localparam int unsigned TRIANGLES  = 32; // more than 29, the maximum number of triangles inside
 
     // First stage: looks up the indices of a triangle one by one, while the FIFO can take their records.
     logic [2:0][15:0]        indices;

@@ -395,7 +395,7 @@ pub mod segment_end {
     pub const Y: Bits = Bits::new(32, 20, 20);
     /// Depth code before its rounding, u18.6.
     pub const W: Bits = Bits::new(64, 24, 24);
-    /// Colour, RGB565, in the first end; bias in the second one.
+    /// Colour, RGB565, in the first end; bias in the second end.
     pub const SIDE: Bits = Bits::new(96, 16, 16);
 }
 
