@@ -1,4 +1,4 @@
-"""Vectors for simulations: accesses to registers and memory with the expected results, one a line.
+"""Vectors for simulations: accesses to registers and memory with the expected results, one per line.
 
     memory OFFSET               place of the following words
     words WORD ...              words of 32 bits

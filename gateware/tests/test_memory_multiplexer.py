@@ -46,7 +46,7 @@ class _Controller(LiteXModule):
 
 
 class _Memory:
-    """Follows the commands at a DFI port. `problems` are accesses to closed rows, and commands earlier than `settings` allow; `columns`
+    """Checks the commands at a DFI port. `problems` are accesses to closed rows, and commands earlier than `settings` allow; `columns`
     the accesses to each bank."""
 
     def __init__(self, settings):
@@ -73,7 +73,7 @@ class _Memory:
             self.last |= {(name, bank): cycle for name in names}
 
     def watch(self, phase, cycle):
-        """Follows the command of this clock."""
+        """Checks the command of this clock."""
         levels = []
         for level in (phase.ras_n, phase.cas_n, phase.we_n):
             levels.append(1 - (yield level))
