@@ -54,7 +54,7 @@ impl Argument for Animate {
                     name: "rate",
                     optional: true,
                     shape: Shape::Word(&WordKind::Text(
-                        &"degrees a second, from -360 to 360; after turn AXIS RATE for all objects, or NUMBER AXIS RATE; then further parts",
+                        &"degrees a second, from -360 to 360; after turn, AXIS RATE or NUMBER AXIS RATE (one object); then further parts",
                     )),
                 },
             ]

@@ -126,7 +126,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The type of [`WordArgument::error`].
+/// The signature of [`WordArgument::error`], which returns the reason why a word is rejected.
 type ErrorOf = fn(&str) -> Option<ValueError<'_>>;
 
 impl Parameter {

@@ -46,7 +46,7 @@ commands! {
         help Help(command: Option<CommandName>): "list the commands, or explain one";
         info Info(key: Option<Name>): "show the state of the machine, or one entry of it";
         selftest SelfTest(): "test clock, memory, sensors, scan-out, and a picture of every engine against its stored checksum";
-        echo Echo(word: Name): "print a word, which marks the end of earlier output for a program";
+        echo Echo(word: Name): "print a word, which tells a host program where earlier output ends";
         leds Leds(value: u16): "set the 16 LEDs";
         buttons Buttons(): "show buttons and switches";
         reboot Reboot(): "reset the SoC";
@@ -62,13 +62,13 @@ commands! {
         unload Unload(name: UploadName) in UPLOAD: "remove an uploaded mesh or texture";
         program Program(upload: Option<Upload>) in WIREFRAME: "upload a wireframe program (binary) and show it; without arguments, show the last one"
             => key(Order::Subject, "cube");
-        press Press(key: Key, rotate: Flag) in WIREFRAME: "press a key of the wireframe for one frame: arrows pan, or rotate; zooms move along z";
+        press Press(key: Key, rotate: Flag) in WIREFRAME: "press a key of the wireframe for one frame: arrow keys pan, or rotate; zoom keys move along z";
     }
     options {
         field Field(field: Or<Off, Field>) or show in FIELD: "show or set the distance field; off shows the mesh"
             => key(Order::Subject, "menger:3").without(&["program"]);
         mesh Mesh(on: bool) or show in MESH_IN_FIELD: "turn the mesh in a field on or off, or show the setting";
-        stereo Stereo(eyes: Or<Off, Stereo>) or show in STEREO: "show or set two eyes: E to each side of the camera, zero parallax at ZERO; off is one eye"
+        stereo Stereo(eyes: Or<Off, Stereo>) or show in STEREO: "show or set stereo: an eye E to each side of the camera, zero parallax at distance ZERO; off is one eye"
             => key(Order::Option, "0.05,3").with(LIT).without(&["orthographic"])
                 .host(option("stereo", stereo::FORM, "Stereo: one eye E to the left of the camera and one E to the right (0 to 1), with zero parallax at the distance ZERO; lengths in world units. The left eye is red, the right one blue or cyan [default tint: red-blue]")
                     .expects("two eyes"));
@@ -79,22 +79,22 @@ commands! {
         demo Demo(action: Option<DemoAction>) in DEMO: "show the scenes of the flash's first list, or of the built-in list demo, in turn";
     }
     options {
-        object Object(action: Object) or show in OBJECT: "list or show the objects, add one, change its place or colour, or remove it"
+        object Object(action: Object) or show in OBJECT: "list or show the objects; add, transform, colour or remove an object"
             => key(Order::Subject, "torus scale 0.5 move 1,0,0").action("add").list().without(&["field", "program"]);
         material Material(material: Material) or show in FIELD: "show or set the material of a field; normal colours by direction, mixed gives each sphere its own colour"
             => key(Order::Option, "jade").with(LIT)
-                .host(option("material", "MATERIAL", "Material of a field; `normal` colours by the normal, `mixed` gives successive spheres different colours [default: normal]. Without a field, a colour that replaces the colours of meshes"));
-        light Light(light: Or<Default, Light>) or show in LIGHT: "show the lights, add one by its direction or at the camera, or restore the default"
+                .host(option("material", "MATERIAL", "Material of a field; `normal` colours by the normal, `mixed` gives successive spheres different colours [default: normal]. Without a field, the colour of the material replaces the colours of meshes"));
+        light Light(light: Or<Default, Light>) or show in LIGHT: "show the lights, add a light by its direction or at the camera, or restore the default lights"
             => key(Order::Option, "1,-2,3,fff0d8").list().with(LIT)
                 .host(option("light", light::FORM, "A light: the direction to it, or `camera` for a light at the camera, and its colour [default colour: white]. Up to four on a field [default: none on `normal`, sun and sky on other materials], one on meshes [default: camera]; if there are several, the first one lights the mesh in a field")
                     .expects("a light"));
         ambient Ambient(colour: Or<Default, Rgb>) or show in LIGHT: "show or set the ambient light"
             => key(Order::Option, "404040").with(LIT)
-                .host(option("ambient", "RRGGBB", "Ambient light [default: 404040 with a --light; without, white on a field and black on meshes]")
+                .host(option("ambient", "RRGGBB", "Ambient light [default: 404040 with a --light; otherwise white on a field and black on meshes]")
                     .expects("a colour RRGGBB"));
         highlight Highlight(highlight: Or<Off, Highlight>) or show in LIGHT: "show or set the highlight of the first light on a field: STRENGTH * cos^EXPONENT"
             => key(Order::Option, "0.6,32").with(FIELD)
-                .host(option("highlight", "STRENGTH,EXPONENT", "Highlight of the first light on a field: its strength, from 0 to 1, and its sharpness, a whole number from 1 to 128. `normal` without a --light has none")
+                .host(option("highlight", "STRENGTH,EXPONENT", "Highlight of the first light on a field: its strength, from 0 to 1, and its exponent, a whole number from 4 to 128. `normal` without a --light has none")
                     .expects("a highlight STRENGTH,EXPONENT such as 0.6,32"));
         shadow Shadow(on: bool) or show in LIGHT: "turn the shadows of the first light in a field on or off, or show the setting"
             => key(Order::Option, "on").with(FIELD)
@@ -112,7 +112,7 @@ commands! {
                 .host(switch("occlusion", "on", "Ambient occlusion: darken a field's surface where other surfaces are close"));
         undecided Undecided(on: bool) or show in FIELD: "turn the magenta colour of a field's rays at the step limit on or off, or show the setting"
             => key(Order::Option, "on").with(FIELD)
-                .host(switch("undecided", "on", "Draw the rays of a field that reach their step limit magenta, instead of the horizon's colour"));
+                .host(switch("undecided", "on", "Draw rays of a field that reach the step limit in magenta instead of the horizon's colour"));
         camera Camera(r: Q32_32, theta: Turns, phi: HalfTurn) in VIEW: "face the origin from distance R (2 to 5), azimuth THETA, angle PHI from the z axis"
             => key(Order::Camera, "4 30 70").with(LIT).without(&["lookat"])
                 .host(option("camera", "R,THETA,PHI", "A camera on a sphere about the origin: the distance (2 to 5), azimuth and polar angle in degrees. The half width of the image plane at distance 1 is 0.9, and the near plane is at 0.1 [default: a camera that shows the whole model; with a field 4,30,60]")
@@ -126,11 +126,11 @@ commands! {
                     .expects("a camera EX,EY,EZ,GX,GY,GZ[,UX,UY,UZ] such as 3,0,1,-3,0,-1"));
         projection Projection(volume: Projection) in VIEW: "set the projection by the sides of the picture, near and far plane, or by a 4x4 matrix"
             => key(Order::Lens, "perspective -0.1 0.1 -0.05 0.06 0.1 10").with(LIT).without(&["fov", "orthographic"])
-                .host(option("projection", "perspective|orthographic|matrix,…", "The projection by the sides of the picture in the near plane and the distances of near and far plane: `perspective,LEFT,RIGHT,BOTTOM,TOP,NEAR[,FAR]`, `orthographic,…`, or `matrix,` and the 16 numbers of a projection matrix of OpenGL, row by row. A far plane clips as --far")
+                .host(option("projection", "perspective|orthographic|matrix,…", "The projection by the sides of the picture in the near plane and the distances of near and far plane: `perspective,LEFT,RIGHT,BOTTOM,TOP,NEAR[,FAR]`, `orthographic,…`, or `matrix,` and the 16 numbers of a projection matrix of OpenGL, row by row. FAR has the effect of --far")
                     .expects("perspective or orthographic,LEFT,RIGHT,BOTTOM,TOP,NEAR[,FAR], or matrix and 16 numbers"));
-        fov FieldOfView(angles: FieldsOfView) in VIEW: "set a perspective projection by its horizontal field of view in degrees; Y makes pixels that are not square"
+        fov FieldOfView(angles: FieldsOfView) in VIEW: "set perspective by its horizontal (X) and vertical (Y) field of view in degrees; without Y, square pixels"
             => key(Order::Lens, "66").with(LIT).without(&["orthographic"])
-                .host(option("fov", "DEGREES[,DEGREES]", "The horizontal field of view, 1 to 179 degrees, instead of the camera's half width, and the vertical one, by default that of square pixels")
+                .host(option("fov", "DEGREES[,DEGREES]", "The horizontal field of view, 1 to 179 degrees, which replaces the camera's half width, and the vertical field of view [default: that of square pixels]")
                     .expects("1 to 179 degrees"));
         orthographic Orthographic(width: U8_28) in VIEW: "set an orthographic projection by the picture's WIDTH in world units (0.0174 to 230); fov sets perspective"
             => key(Order::Lens, "2").with(MESHES).without(FIELD)
@@ -168,23 +168,23 @@ commands! {
 
     /// Commands for steering by a hand in front of the image sensor.
     GestureCommands {
-        gesture Gesture(action: Option<GestureAction>) in GESTURE: "show the state of the hand; let it steer the camera, calibrate its colour, or send its mask (binary)";
+        gesture Gesture(action: Option<GestureAction>) in GESTURE: "show the state of the hand; let the hand steer the camera, calibrate its colour, or send its mask (binary)";
     }
     options {
         quality Quality(quality: Quality) or show: "show or set the quality: size and samples of the picture, and the precision of a field's rays"
             => key(Order::Size, "balanced");
         size Size(size: Size): "set the picture size: 320 180, 640 360 or 1280 720"
             => key(Order::Size, "640 360");
-        aa Antialiasing(samples: Or<Default, Samples>) or show: "show or set the samples of a pixel: 1, or 4 against stair steps; default is 4 where it is fast enough"
+        aa Antialiasing(samples: Or<Default, Samples>) or show: "show or set the samples of a pixel: 1, or 4 for antialiasing; default is 4 where the board is fast enough"
             => key(Order::Size, "4");
         backend Backend(backend: Backend) or show: "show or set the backend that draws frames"
             => key(Order::Size, "gateware");
         shading Shading(shading: Shading) or show in MESH: "show or set the shading: flat (one colour per triangle) or smooth (interpolated)"
             => key(Order::Option, "smooth").with(MESHES)
-                .host(option("shading", "SHADING", "Source of a mesh's colours: `flat` (triangles), or `smooth` (vertices, interpolated) [default: flat; by the model smooth, if the file has a normal for each corner]"));
+                .host(option("shading", "SHADING", "Source of a mesh's colours: `flat` (triangles), or `smooth` (vertices, interpolated) [default: flat; smooth if the host draws a file that has a normal for each corner]"));
         cull Cull(on: bool) in MESH: "turn culling of back faces on or off"
             => key(Order::Option, "off").with(MESHES)
-                .host(switch("no-cull", "off", "Draw back faces too"));
+                .host(switch("no-cull", "off", "Do not cull back faces"));
         clip Clip(far: Or<Off, U8_28>) in MESH: "clip triangles to the picture and a far plane at distance FAR; off clips to the guard band"
             => key(Order::Option, "10").with(MESHES)
                 .host(option("far", "DISTANCE", "Clip triangles to the picture, the near plane and a far plane at this distance, instead of to the near plane and the engine's guard band")
@@ -195,11 +195,11 @@ commands! {
         textures Textures(on: bool) in TEXTURE: "turn textures of meshes on or off"
             => key(Order::Option, "off").with(MESHES)
                 .host(switch("no-textures", "off", "Draw meshes without their textures"));
-        texture Texture(texture: Or<Own, TextureName>) or show in TEXTURE: "show or set the uploaded texture that faces show in place of their own; own shows those of the mesh"
+        texture Texture(texture: Or<Own, TextureName>) or show in TEXTURE: "show or set an uploaded texture that replaces the textures of meshes; own restores the textures of meshes"
             => key(Order::Option, "wood.png").with(MESHES);
         edges Edges(edges: Or<Off, Edges>) or show in EDGES: "show or set the edges of a mesh: hidden (only edges that no face hides) or over (on the shaded faces)"
             => key(Order::Option, "over").with(&["model"]).without(FIELD)
-                .host(option("wireframe", "WIREFRAME", "Draw the edges of the model, white, each once: `hidden` (only the edges that no face hides), or `over` (over the shaded faces)"));
+                .host(option("wireframe", "WIREFRAME", "Draw the edges of the model in white: `hidden` (only the edges that no face hides), or `over` (over the shaded faces)"));
         dither Dither(on: bool) or show in VIEW: "turn ordered dithering of colours on or off, or show the setting; off rounds to nearest"
             => key(Order::Option, "off").with(LIT)
                 .host(switch("no-dither", "off", "Round colours to the nearest of RGB565 instead of dithering them"));
@@ -214,7 +214,7 @@ commands! {
         render Render(depth: Flag): "draw the frame again and show its statistics; depth also writes depth codes";
         frame Frame(depth: Flag): "download the last frame (binary): colour or depth codes";
         stats Stats(json: Flag): "show statistics of the last frame";
-        bench Bench(benchmark: Option<Benchmark>) in BENCH: "measure sine and frames in clock cycles, or one kernel; triangle and field draw FRAMES frames (default 8)";
+        bench Bench(benchmark: Option<Benchmark>) in BENCH: "measure clock cycles of sine and frames, or of a kernel; triangle and field draw FRAMES frames (default 8)";
     }
     options {}
 }

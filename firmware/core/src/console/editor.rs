@@ -272,7 +272,7 @@ impl LineEditor {
         text(self.line.get(..self.cursor).unwrap_or_default())
     }
 
-    /// Clears the terminal's line, and writes prompt and line again. A line that has ended is not part of the new line.
+    /// Clears the terminal's line, and writes prompt and line again. If the line has ended, the new line is empty.
     ///
     /// # Errors
     /// The errors of `echo`.
@@ -290,7 +290,7 @@ impl LineEditor {
         let (mut count, mut common) = (0, Line::new());
         complete(self.before(), names, &mut |_, rest| {
             if count == 0 {
-                // Longer candidates than a line are completed in part.
+                // Candidates longer than a line are completed only in part.
                 common.extend(rest.bytes().take(LINE_MAX));
             }
             let pairs = rest.bytes().zip(&common);
@@ -305,7 +305,7 @@ impl LineEditor {
             self.insert(*byte, echo)?;
         }
         match count {
-            // Numbers follow a colon.
+            // After a colon the user types numbers, so no blank follows.
             1 if self.before().ends_with(':') => Ok(()),
             1 => self.insert(b' ', echo),
             2.. if common.is_empty() => {

@@ -53,9 +53,9 @@ pub enum ValueError<'a> {
     Size([u32; 2]),
     /// A number of samples follows an action of the sensor that does not take this argument.
     Samples {
-        /// The action.
+        /// The action that was given.
         action: &'static str,
-        /// The number of samples.
+        /// The number of samples that was given.
         samples: u32,
     },
     /// The two directions of a mounting, forward and up, lie on the same axis of the sensor.

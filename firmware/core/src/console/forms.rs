@@ -39,7 +39,7 @@ pub struct HostOption {
     pub value: &'static str,
     /// Value of the setting for an option that takes no value; `None` for an option that takes one.
     pub switch: Option<&'static str>,
-    /// Help.
+    /// Help text of the option.
     pub help: &'static str,
     /// Description of the expected value, for errors.
     pub expected: &'static str,
@@ -52,7 +52,7 @@ pub enum Order {
     Size,
     /// The camera, whose command may also set the lens.
     Camera,
-    /// The lens.
+    /// Commands that set the lens: projection, field of view, near plane and zoom.
     Lens,
     /// Any other option.
     Option,
@@ -62,8 +62,8 @@ pub enum Order {
     Fit,
 }
 
-/// Makes a key with the command's name: its position in the order of execution, and an example of its
-/// value.
+/// Makes a key that has the command's name, from its position in the order of execution and an example of
+/// its value.
 pub const fn key(order: Order, example: &'static str) -> Forms {
     Forms {
         key: None,
@@ -77,7 +77,7 @@ pub const fn key(order: Order, example: &'static str) -> Forms {
     }
 }
 
-/// Makes an option of the command line with its name, the name of its value, and its help line.
+/// Makes an option of the command line from its name, the name of its value, and its help line.
 pub const fn option(name: &'static str, value: &'static str, help: &'static str) -> HostOption {
     HostOption {
         name,
@@ -88,7 +88,7 @@ pub const fn option(name: &'static str, value: &'static str, help: &'static str)
     }
 }
 
-/// Makes an option without a value on the command line, which stands for `value`.
+/// Makes an option that takes no value on the command line; the option sets the setting to `value`.
 pub const fn switch(name: &'static str, value: &'static str, help: &'static str) -> HostOption {
     HostOption {
         switch: Some(value),

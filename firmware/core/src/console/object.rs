@@ -10,15 +10,15 @@ use crate::object::{MAX_OBJECTS, Operation, Place, PlaceError};
 /// An action of the command `object`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ObjectAction<'a> {
-    /// List the objects.
+    /// List the objects with their numbers and placements.
     List,
-    /// Show the objects.
+    /// Show the objects in the picture, in place of a mesh or a field.
     Show,
     /// Add an object at the end of the list.
     Add {
         /// Name of the mesh.
         mesh: &'a str,
-        /// Its placement and colour.
+        /// Placement and colour of the mesh.
         place: Place,
     },
     /// Move, rotate, scale or colour an object, or multiply it by a matrix.

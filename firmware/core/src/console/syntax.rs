@@ -9,7 +9,7 @@ pub struct Syntax {
     pub name: &'static str,
     /// Help line: an imperative without a full stop.
     pub summary: &'static str,
-    /// Parameters in their order. Only the last parameter may be optional.
+    /// Parameters in the order of the line. Only the last parameter may be optional.
     pub parameters: &'static [Parameter],
     /// Whether the line may end before the parameters, which shows the current setting.
     pub is_shown: bool,
@@ -68,13 +68,13 @@ pub enum WordKind {
 /// Lists of names that the machine has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NameList {
-    /// Scenes, lists of scenes, and meshes.
+    /// Names of scenes, of lists of scenes, and of meshes.
     Scenes,
-    /// Meshes.
+    /// Names of meshes.
     Meshes,
-    /// Uploaded textures.
+    /// Names of uploaded textures.
     Textures,
-    /// Uploaded meshes and textures.
+    /// Names of uploaded meshes and textures.
     Uploads,
 }
 

@@ -215,7 +215,7 @@ macro_rules! shows {
     };
 }
 
-/// The feature with this name, or without a name the feature of every build.
+/// The feature with this name; without a name, the feature that every build has.
 macro_rules! part {
     () => {
         $crate::feature::BASE

@@ -31,15 +31,15 @@ impl Union {
     pub(super) const KINDS: [(&str, &str); 3] = [
         (
             "union:A+B",
-            "A menger, box, cubes, boxes, planes or lattice, B sphere, spheres, moving or cone, both as one solid",
+            "A is menger, box, cubes, boxes, planes or lattice; B is sphere, spheres, moving or cone; both form one solid",
         ),
         (
             "smooth:K,A+B",
-            "A menger or box, with a fillet of the width K between A and B",
+            "A is menger or box; a fillet of the width K joins A and B",
         ),
         (
             "bent:N,A+B",
-            "A menger or box, with 2^N times the distance to A, N 1 to 6: planes that bend about B",
+            "A is menger or box; the distance to A is multiplied by 2^N, N from 1 to 6, so that faces of A bend about B",
         ),
     ];
 
@@ -182,7 +182,7 @@ impl Union {
     }
 }
 
-/// The error of members that a union with a fillet of this width does not accept.
+/// The error for members that a union with a fillet of this width does not accept.
 fn kind_error(blend: Q32_32) -> FieldError<'static> {
     match blend == Q32_32::ZERO {
         true => FieldError::Union,

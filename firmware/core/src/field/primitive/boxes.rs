@@ -36,7 +36,7 @@ impl FieldKind for Cubes {
 
     const NAME: &'static str = "cubes";
     const FORM: &'static str = "cubes:PERIOD,HALF";
-    const ABOUT: &'static str = "a lattice of cubes with half the side HALF";
+    const ABOUT: &'static str = "a lattice of cubes with the half side HALF";
     const EXAMPLE: &'static str = "cubes:2,0.8";
     const LOOK: &'static [&'static str] = &[
         "lookat 1 -1 1 -1 1.2 -1.5",
@@ -71,7 +71,7 @@ impl FieldKind for Boxes {
     const NAME: &'static str = "boxes";
     const FORM: &'static str = "boxes:PERIOD,X,Y,Z";
     const ABOUT: &'static str =
-        "a lattice of boxes with half the sides X, Y, Z; boxes with PERIOD/2 are connected";
+        "a lattice of boxes with the half sides X, Y, Z; boxes with a half side of PERIOD/2 touch";
     const EXAMPLE: &'static str = "boxes:2,0.7,0.3,0.12";
     const LOOK: &'static [&'static str] = &[
         "lookat 1 -1 0.9 -0.7 1.5 -0.35",

@@ -1,5 +1,5 @@
-//! `box:X,Y,Z` and `planes:HALF`: a box, and the space between a floor and a ceiling. Their solid is
-//! also that of lattices of boxes.
+//! `box:X,Y,Z` and `planes:HALF`: a box, and the space between a floor and a ceiling. Lattices of
+//! boxes use the same solid.
 
 use core::fmt;
 
@@ -30,7 +30,7 @@ impl FieldKind for Cuboid {
 
     const NAME: &'static str = "box";
     const FORM: &'static str = "box:X,Y,Z";
-    const ABOUT: &'static str = "a box about the origin with half the sides X, Y, Z";
+    const ABOUT: &'static str = "a box about the origin with the half sides X, Y, Z";
     const EXAMPLE: &'static str = "box:1,0.5,0.25";
     const MEMBER: Option<Member> = Some(Member::First);
 
