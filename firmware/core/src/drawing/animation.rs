@@ -80,7 +80,7 @@ pub struct Animation {
     pub azimuth: Rate,
     /// Rate of the angle of a sphere on an orbit.
     pub orbit: Rate,
-    /// Rotation of objects.
+    /// Rotation of one object or of all objects; `None` if no object rotates.
     pub turn: Option<ObjectTurn>,
 }
 

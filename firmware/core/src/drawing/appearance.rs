@@ -11,7 +11,7 @@ use crate::light::{
 /// normal, and the background is white. Lights, ambient light, background and fog also apply to meshes.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Appearance {
-    /// Material.
+    /// Material of the solid.
     pub material: Material,
     /// Lights; an empty list selects the default lights of the material.
     pub lights: Vec<Light, MAX_LIGHTS>,
@@ -26,7 +26,7 @@ pub struct Appearance {
     /// Density of the fog per world unit: over a distance d, the fog transmits the fraction exp(−d · density) of the light. 0
     /// means no fog.
     pub fog: U4_28,
-    /// Whether ambient occlusion is on.
+    /// Whether surfaces are darker where other surfaces are close.
     pub occlusion: bool,
     /// Whether rays that end at the step limit are magenta instead of the colour of the horizon.
     pub undecided: bool,
@@ -78,7 +78,7 @@ impl Appearance {
         }
     }
 
-    /// The background of a field.
+    /// The background of a field: the set background, by default white.
     pub fn field_background(&self) -> Background {
         self.background.unwrap_or(Background::White)
     }

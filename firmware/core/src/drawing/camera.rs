@@ -221,7 +221,8 @@ impl View {
         Ok(Self { lens, ..self })
     }
 
-    /// Returns this camera with a picture enlarged about its middle by `factor`: half width and half height are divided by it, rounded down.
+    /// Returns this camera with a picture enlarged about its middle by `factor`: half width and half height are divided by `factor`,
+    /// rounded down.
     ///
     /// # Errors
     /// The half width is then not from 0.0087 to 115, or the half height not from 0.0049 to 115.
@@ -270,7 +271,8 @@ impl View {
         }
     }
 
-    /// The eye, moved sideways to the middle of the picture in orthographic projection; parallel lines of sight have no other eye.
+    /// The eye. In orthographic projection, the eye moved sideways to the middle of the picture, because parallel lines of sight define no
+    /// eye.
     pub fn eye_of_middle(&self) -> [Q32_32; 3] {
         let [right, down] = self.lens.middle().map(Q32_32::from);
         match self.projection() {
@@ -310,7 +312,7 @@ impl View {
         &self.lens
     }
 
-    /// The projection.
+    /// The projection of the lens: perspective or orthographic.
     pub const fn projection(&self) -> Projection {
         self.lens.projection()
     }
@@ -368,7 +370,8 @@ fn tangent_of_half(angle: Turns) -> Result<U8_28, ViewError> {
     Ok(U8_28::from_bits(tangent.unsigned_abs()))
 }
 
-/// The place `by` world units (less than 8) from `place` along an axis of a camera. Each product is rounded down in magnitude.
+/// Returns the point at the distance `by` (less than 8 world units) from the point `place` along an axis of a camera. Each product is
+/// rounded down in magnitude.
 #[inline(never)]
 fn moved(place: [Q32_32; 3], axis: [Q2_23; 3], by: Q32_32) -> [Q32_32; 3] {
     [0, 1, 2].map(|i: usize| {
@@ -400,7 +403,7 @@ fn scaled(r: Q32_32, x: i64) -> Q32_32 {
     Q32_32::from_bits(((i128::from(r.to_bits()) * i128::from(x) + (1 << 59)) >> 60) as i64)
 }
 
-/// Whether a place is within `distance` world units of the origin.
+/// Whether a point is within `distance` world units of the origin.
 pub fn is_within(place: [Q32_32; 3], distance: u32) -> bool {
     let limit = u128::from(distance) << 32;
     // The square of each coordinate is at most 2^126, so the sum fits 128 bits.

@@ -24,14 +24,14 @@ impl Rgb565 {
         [r - (r >> 5), g - (g >> 6), b - (b >> 5)]
     }
 
-    /// The channels with fraction bits, as of [`with_fractions`](Self::with_fractions), that are 0.
+    /// The channels in the format of [`with_fractions`](Self::with_fractions), with fractions of 0.
     pub const fn fractions(self) -> [u8; 3] {
         let [r, g, b] = self.channels();
         [r << 3, g << 2, b << 3]
     }
 
     /// Rounds channels with fraction bits, as of [`with_fractions`](Self::with_fractions), for the pixel in column x and line y. A channel
-    /// whose fraction is 0 stays as it is; one above the largest value wraps, as in the gateware.
+    /// whose fraction is 0 keeps its value; a channel above the largest value wraps, as in the gateware.
     pub fn rounded([r, g, b]: [u8; 3], rounding: Rounding, place: [u32; 2]) -> Self {
         let threshold = rounding.threshold(place);
         let five = |channel: u8| (channel.wrapping_add(threshold) >> 3) as u16;
@@ -58,7 +58,7 @@ impl Rgb565 {
 /// How channels with fraction bits are rounded to RGB565.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Rounding {
-    /// With ordered dithering: over 4×4 pixels of one colour the mean of a channel is the given one, within 1/255.
+    /// With ordered dithering: over 4×4 pixels of one colour, the mean of a channel is the given value within 1/255.
     #[default]
     Dithered,
     /// To nearest.
@@ -74,8 +74,9 @@ impl Rounding {
         }
     }
 
-    /// What is added before a channel is truncated to its fraction bits, whose unit is 2^`unit_log2`, for [`Rgb565::rounded`]: half the unit,
-    /// or nothing before rounding to nearest, which would round a second time.
+    /// Number to add before a channel is truncated to the fraction bits that [`Rgb565::rounded`] takes, whose unit is 2^`unit_log2`. With
+    /// dithering the number is half the unit. Otherwise it is 0, because `rounded` rounds to nearest, and a second rounding would be
+    /// less exact.
     pub const fn before_fractions(self, unit_log2: u32) -> u32 {
         match self {
             Self::Dithered => 1 << (unit_log2 - 1),
@@ -83,8 +84,8 @@ impl Rounding {
         }
     }
 
-    /// What is added before truncation in the pixel in column x and line y, in eighths of a step of red and blue. Half of it, rounded
-    /// down, is added to green, in quarters of a step.
+    /// Number to add before truncation in the pixel in column x and line y, in eighths of a step of red and blue. Half of this number,
+    /// rounded down, is added to green, in quarters of a step.
     pub fn threshold(self, [x, y]: [u32; 2]) -> u8 {
         match self {
             Self::Dithered => ((x ^ y) << 2 & 4 | y << 1 & 2 | (x ^ y) >> 1 & 1) as u8,

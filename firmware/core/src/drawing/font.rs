@@ -14,7 +14,7 @@ const CHARACTER: [u16; 2] = [6, 10];
 /// Number of characters in a row of the texture.
 const IN_ROW: u16 = 16;
 
-/// The characters from the space to `~`, white on a transparent ground.
+/// The characters from the space to `~`, white on a transparent background.
 const PICTURE: Picture = Picture {
     size_log2: [7, 6],
     is_cut_out: true,
@@ -44,7 +44,7 @@ impl<'a> Font<'a> {
         Some(Self { texture })
     }
 
-    /// The texture.
+    /// The texture that contains all characters of the font.
     pub const fn texture(&self) -> Texture<'a> {
         self.texture
     }
@@ -61,9 +61,9 @@ impl<'a> Font<'a> {
         let texture = self.texture;
         let [width, height] = CHARACTER.map(|side| side * u16::from(scale));
         let [left, top] = place;
-        // Columns beyond the largest place are outside of every picture.
+        // Columns beyond the largest coordinate are outside of every picture.
         let columns = (i32::from(left)..=i16::MAX.into()).step_by(width.max(1).into());
-        // Exact: both ends of the range are in 16 bits.
+        // Exact: both ends of the range fit 16 bits.
         let places = columns.map(move |column| [column as i16, top]);
         let shown = text.chars().zip(places).filter(|&(shown, _)| shown != ' ');
         shown.map(move |(shown, place)| {

@@ -89,7 +89,7 @@ impl Light {
         self.direction
     }
 
-    /// The light's colour.
+    /// The colour of the light: red, green and blue.
     pub const fn colour(&self) -> Rgb {
         self.colour
     }
@@ -192,9 +192,9 @@ impl core::error::Error for LightError<'_> {}
 /// The lighting of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lighting {
-    /// Ambient light.
+    /// Ambient light, which all faces receive.
     pub ambient: Rgb,
-    /// Lights.
+    /// Lights in order; only the first light has shadows and a highlight.
     pub lights: Vec<Light, MAX_LIGHTS>,
     /// Highlight of the first light.
     pub highlight: Option<Highlight>,
@@ -404,7 +404,7 @@ impl fmt::Display for Highlight {
 /// The lighting of the meshes of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MeshLighting {
-    /// Ambient light.
+    /// Ambient light, which all faces receive.
     pub ambient: Rgb,
     /// The only light.
     pub light: Light,
@@ -545,7 +545,7 @@ pub enum Background {
 }
 
 impl Background {
-    /// Colour at the nadir of the sky behind meshes, which is the horizon's colour behind a field.
+    /// Colour at the nadir of the sky behind meshes.
     const GROUND: Rgb = [98, 96, 92];
     /// Colour at the bottom of the gradient.
     const BOTTOM: Rgb = [168, 174, 182];

@@ -12,7 +12,7 @@ use crate::words::{Word, Words};
 /// The placement of an object: its model matrix and its colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
-    /// The model matrix.
+    /// Model matrix from the coordinates of the mesh to those of the world.
     pub matrix: Matrix,
     /// Colour that replaces the colours of the mesh.
     pub colour: Option<Rgb565>,

@@ -14,9 +14,9 @@ pub struct Rectangle<'a> {
     pub size: [u16; 2],
     /// The part of the texture. A rectangle whose part is not in its texture is not drawn.
     pub part: Part,
-    /// Whether left and right, and whether top and bottom of the part are exchanged.
+    /// Whether the part is flipped horizontally, and whether it is flipped vertically.
     pub is_mirrored: [bool; 2],
-    /// Colour by which the texels are multiplied. White leaves them as they are.
+    /// Colour by which the texels are multiplied. White leaves the texels unchanged.
     pub colour: Rgb565,
 }
 
@@ -25,12 +25,12 @@ pub struct Rectangle<'a> {
 pub struct Part {
     /// Column and row of the upper left texel.
     pub place: [u16; 2],
-    /// Width and height.
+    /// Width and height in texels.
     pub size: [u16; 2],
 }
 
 impl<'a> Rectangle<'a> {
-    /// A part of a texture, whose texels are shown by one pixel each.
+    /// Makes a rectangle that shows a part of a texture with one pixel per texel.
     pub const fn new(texture: Texture<'a>, part: Part, place: [i16; 2]) -> Self {
         Self {
             texture,

@@ -139,7 +139,7 @@ pub enum StereoError<'a> {
     HalfSeparation(Q32_32),
     /// The distance of zero parallax is too small.
     ZeroParallax {
-        /// The distance.
+        /// The distance that was given.
         zero_parallax: Q32_32,
         /// The smallest accepted distance at this half separation.
         least: Q32_32,

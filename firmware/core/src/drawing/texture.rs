@@ -30,12 +30,12 @@ pub const BLOCK_BYTES: usize = 2 * WORD;
 /// The representation of a texel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Format {
-    /// A colour.
+    /// A colour in RGB565.
     #[default]
     Rgb565,
-    /// An index of 256 colours.
+    /// An index into a palette of 256 colours.
     Palette256,
-    /// An index of 16 colours.
+    /// An index into a palette of 16 colours.
     Palette16,
 }
 
@@ -43,7 +43,7 @@ impl Format {
     /// All formats, by their numbers in the header.
     pub const ALL: [Self; 3] = [Self::Rgb565, Self::Palette256, Self::Palette16];
 
-    /// Bits of a texel.
+    /// Number of bits of a texel.
     pub const fn bits(self) -> usize {
         match self {
             Self::Rgb565 => 16,
@@ -121,7 +121,7 @@ impl Filter {
 pub struct Sampler {
     /// The rule beyond the left and right sides, and the rule beyond the upper and lower sides.
     pub wrap: [Wrap; 2],
-    /// The filter between texels.
+    /// The rule for the colour between texels.
     pub filter: Filter,
 }
 
@@ -237,7 +237,7 @@ impl<'a> Texture<'a> {
         self.format
     }
 
-    /// The sampling rules.
+    /// The rules by which the texture is sampled.
     pub const fn sampler(&self) -> Sampler {
         self.sampler
     }
@@ -274,7 +274,7 @@ impl<'a> Texture<'a> {
         1 << (across + down)
     }
 
-    /// Base-2 logarithms of the numbers of blocks across and down of a level. A level that is smaller than a block takes a block.
+    /// Base-2 logarithms of the numbers of blocks across and down of a level. A level that is smaller than a block takes one block.
     fn blocks_log2(&self, level: u32) -> [u32; 2] {
         let (sides, block) = (self.level_log2(level), self.format.block_log2());
         [0, 1].map(|axis: usize| sides[axis].saturating_sub(block[axis]))
@@ -307,7 +307,7 @@ impl<'a> Texture<'a> {
         })
     }
 
-    /// The colour of an index.
+    /// The colour in the palette with the number `index`.
     fn palette(&self, index: u16) -> Rgb565 {
         let at = TextureHeader::BYTES + 2 * usize::from(index);
         let colour = self.bytes.get(at..).and_then(<[u8]>::first_chunk);
@@ -347,7 +347,7 @@ fn expect(field: Range<usize>, expected: Expected, found: u32) -> Result<(), Dev
     deviation::Format::Texture.expect(field.start as u32, expected, found)
 }
 
-/// The value for which a number in the header stands.
+/// The value that a number in the header represents.
 fn one_of<T: Copy>(
     field: Range<usize>,
     name: &'static str,

@@ -65,7 +65,7 @@ pub enum ViewError {
     HalfHeight(U8_28),
     /// A coordinate of the middle of the picture is out of range.
     Middle(Q32_32),
-    /// A side of the window is not beyond its opposite.
+    /// The right side of the window is not beyond the left side, or the upper side not beyond the lower side.
     Sides {
         /// The left or the lower side.
         low: Side,
@@ -74,15 +74,15 @@ pub enum ViewError {
         /// Coordinate of the opposite side.
         most: Q32_32,
     },
-    /// An entry of a matrix that is no projection.
+    /// An entry that makes a matrix neither a perspective nor an orthographic projection.
     Matrix {
-        /// The projection of matrices with its entry in row 4, column 3, zero or not.
+        /// The projection that the entry in row 4, column 3 selects: orthographic if this entry is 0, otherwise perspective.
         projection: Projection,
         /// Number of the entry, row by row, from 0.
         place: u8,
-        /// The entry.
+        /// Value of the entry.
         found: Q32_32,
-        /// What the entry of a projection is.
+        /// The value that this entry has in a projection.
         expected: &'static str,
     },
     /// The near plane is out of range.

@@ -90,7 +90,8 @@ impl Lens {
         })
     }
 
-    /// The lens with half width and half height divided by `factor`, rounded down; a factor of 0 makes them 256. Quotients saturate at 2^31.
+    /// The lens with half width and half height divided by `factor`, rounded down; for a factor of 0 both become 256. Quotients saturate
+    /// at 2^31.
     pub(super) fn zoomed(self, factor: U8_28) -> Result<Self, ViewError> {
         let part = |half: U8_28| {
             if factor == 0 {
@@ -134,7 +135,7 @@ impl Lens {
         }
     }
 
-    /// The projection.
+    /// The projection: perspective or orthographic.
     pub const fn projection(&self) -> Projection {
         self.projection
     }
@@ -150,7 +151,7 @@ impl Lens {
         self.half_height.unwrap_or_else(square)
     }
 
-    /// The middle of the window along u and v, in world units; each within 6, or within 7 for an eye of a stereo pair.
+    /// The middle of the window along u and v, in world units. Each coordinate is within ±6, or ±7 for an eye of a stereo pair.
     pub const fn middle(&self) -> [Q4_28; 2] {
         self.middle
     }
@@ -160,8 +161,9 @@ impl Lens {
         self.near
     }
 
-    /// A length on the screen in pixels, and the same length in the window, across and down: half of the width and half of the height of a
-    /// picture. With square pixels both are those across, so that both directions have the same scale, bit for bit.
+    /// For each direction, across and down: a length on the screen in pixels, and the same length in the window. The lengths are half of
+    /// the width and half of the height of a picture. With square pixels, both directions have the lengths across, so that their scales
+    /// are equal, bit for bit.
     #[inline(always)]
     pub fn scales(&self, [width, height]: [u32; 2]) -> [(u32, U8_28); 2] {
         let across = (width / 2, self.half_width);
@@ -170,8 +172,8 @@ impl Lens {
     }
 }
 
-/// Writes half width and near plane; then, unless it is perspective with square pixels and a centred window, the projection; then, for other
-/// windows, the half height and the middle along u and v.
+/// Writes half width and near plane. The projection follows, unless it is perspective and the window is centred with square pixels. For any
+/// other window, the half height and the middle along u and v follow.
 impl fmt::Display for Lens {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Self {

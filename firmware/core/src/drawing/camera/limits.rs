@@ -1,4 +1,4 @@
-//! Ranges of the numbers of a camera.
+//! Ranges and default values of the parameters of a camera.
 
 use crate::fixed::{Q4_28, Q32_32, Turns, U4_28, U8_28};
 
@@ -11,7 +11,7 @@ pub const DEFAULT_NEAR: U4_28 = U4_28::lit("0.1");
 pub const MAX_EYE: u32 = 32;
 /// Smallest and largest accepted half width of the image plane, at distance 1 in perspective, in world units.
 pub const HALF_WIDTH: [U8_28; 2] = [U8_28::lit("0.0087"), U8_28::lit("115")];
-/// Smallest and largest accepted half height of the image plane, as the half width.
+/// Smallest and largest accepted half height of the image plane, at distance 1 in perspective, in world units.
 pub const HALF_HEIGHT: [U8_28; 2] = [U8_28::lit("0.0049"), U8_28::lit("115")];
 /// Largest accepted distance of the picture's middle from the camera's axis, across and down, at distance 1 in perspective, in world units.
 pub const MIDDLE: Q4_28 = Q4_28::lit("6");

@@ -9,13 +9,13 @@ use crate::fixed::{Q32_32, U4_28, U8_28};
 /// The sides of a window, in world units: to the right and up on the screen from the camera's axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sides {
-    /// The left side.
+    /// Coordinate of the left side.
     pub left: Q32_32,
-    /// The right side, beyond the left one.
+    /// Coordinate of the right side, above `left`.
     pub right: Q32_32,
-    /// The lower side.
+    /// Coordinate of the lower side.
     pub bottom: Q32_32,
-    /// The upper side, above the lower one.
+    /// Coordinate of the upper side, above `bottom`.
     pub top: Q32_32,
 }
 
@@ -65,7 +65,8 @@ impl ViewVolume {
 
     /// Makes a volume from a projection matrix M of OpenGL's convention: the column (x, y, z, 1) of a point in the camera's coordinates (x to
     /// the right, y up, z backwards) becomes M·(x, y, z, 1), whose first three components divided by the fourth are in −1…1 inside the
-    /// volume, with z = −1 in the near plane. Any positive multiple of a matrix means the same. A far plane at 256 world units or
+    /// volume, with z = −1 in the near plane. Any positive multiple of a matrix defines the same
+    /// projection. A far plane at 256 world units or
     /// beyond, or at infinity, clips nothing, and is left out.
     ///
     /// Half width, half height and middle of the window, near and far plane are quotients of the matrix's entries and their sums, rounded to
@@ -97,7 +98,7 @@ impl ViewVolume {
         }
         let at = |row: usize, column: usize| matrix[row][column].to_bits();
         let (a, b) = (at(2, 2), at(2, 3));
-        // The divisor w of the window's half sizes, the column of its middle, and the planes whose coordinate is ∓1.
+        // The dividend w of the window's half sizes, the column with its middle, and the planes at which z becomes −1 and 1.
         let (w, column, [near, far]) = match projection {
             // At the depth d, −a·d + b = ∓w·d.
             Projection::Perspective => {
@@ -148,7 +149,7 @@ impl ViewVolume {
 /// The quotient of two numbers, rounded to nearest with ties away from 0, with 28 fraction bits. A quotient beyond ±2^34 saturates.
 #[inline(never)]
 fn ratio(number: i64, divisor: i64) -> i64 {
-    // With a fraction bit more than the result.
+    // The quotient has one fraction bit more than the result.
     let twice = quotient_with_fraction(number.unsigned_abs(), divisor.unsigned_abs(), 29);
     let nearest = ((twice + 1) >> 1) as i64;
     if (number < 0) == (divisor < 0) {

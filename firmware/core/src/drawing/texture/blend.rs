@@ -5,16 +5,16 @@ use crate::colour::Rgb565;
 /// How the colours of a texture are blended with the picture behind it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Blend {
-    /// Its colours replace the picture.
+    /// The texture replaces the picture.
     #[default]
     Opaque,
-    /// Its colours have this share, and the picture has the rest.
+    /// The result is a weighted mean: the texture has this weight, and the picture has the rest.
     Share(Eighths),
-    /// Its colours are added to the picture.
+    /// The colours of the texture are added to the picture.
     Additive,
 }
 
-/// A number of eighths, 1 to 7; [`Blend::ALL`] has them.
+/// A number of eighths, 1 to 7. Other modules take it from [`Blend::ALL`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Eighths(u8);
 
@@ -32,7 +32,7 @@ impl Blend {
         Self::Additive,
     ];
 
-    /// Its number in the header.
+    /// The number of this rule in the header.
     pub const fn number(self) -> u8 {
         match self {
             Self::Opaque => 0,

@@ -16,10 +16,10 @@ pub struct Picture {
     pub size_log2: [u8; 2],
     /// Whether some texels are transparent.
     pub is_cut_out: bool,
-    /// Whether rectangles show parts of it: it then has one level and is sampled at the nearest texel. Otherwise it has all mip levels and is
-    /// sampled bilinearly.
+    /// Whether rectangles show parts of the texture. If so, the texture has one level and is sampled at the nearest texel. Otherwise it has
+    /// all mip levels and is sampled bilinearly.
     pub is_atlas: bool,
-    /// How it is blended with the picture behind it.
+    /// How the texture is blended with the picture behind it.
     pub blend: Blend,
     /// Returns the colour of a texel of the largest level; `None` if it is transparent.
     pub texel: fn([u32; 2]) -> Option<Rgb565>,

@@ -16,7 +16,7 @@ pub struct Source {
     pub format: Format,
     /// Base-2 logarithms of width and height.
     pub size_log2: [u8; 2],
-    /// The sampling rules.
+    /// The rules by which the texture is sampled.
     pub sampler: Sampler,
     /// The value of a transparent texel.
     pub key: Option<u16>,
