@@ -1,4 +1,4 @@
-//! What a board does without a host: its demo, its displays of digits, and the turns of its tasks.
+//! Functions of a board without a host: the demo, the seven-segment displays, and the scheduling of tasks.
 
 pub mod demo;
 pub mod digits;

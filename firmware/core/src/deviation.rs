@@ -5,22 +5,22 @@ use core::fmt;
 /// A binary format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// A mesh.
+    /// The format of a mesh in memory.
     Mesh,
-    /// A texture.
+    /// The format of a texture in memory.
     Texture,
     /// A texture of a mesh, which begins at this byte of the mesh.
     TextureAt(u32),
-    /// A flash image.
+    /// The format of a flash image.
     Flash,
 }
 
-/// Reason why bytes do not have a format.
+/// Reason why bytes do not conform to a format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Deviation {
-    /// The format.
+    /// The format that the bytes should have.
     pub format: Format,
-    /// Offset of the deviation in bytes from the start of the mesh, texture or flash.
+    /// Offset of the deviation in bytes from the start of the mesh, texture or flash image.
     pub offset: u32,
     /// The content that was expected at the offset.
     pub expected: Expected,
@@ -42,7 +42,7 @@ pub enum Expected {
     AtLeast(&'static str, u32),
     /// At most this number of items.
     AtMost(&'static str, u32),
-    /// A number with this meaning, from the first number to the second.
+    /// A number with this meaning, at least the first number and at most the second.
     Within(&'static str, u32, u32),
     /// An index below this number of items.
     Below(&'static str, u32),
@@ -77,7 +77,7 @@ impl Format {
     ///
     /// # Errors
     /// The number is not as expected.
-    // Inlined, so that only the comparison remains of a check that passes.
+    // Inlined, so that a check that passes consists only of the comparison.
     #[inline]
     pub(crate) const fn expect(
         self,
@@ -91,7 +91,7 @@ impl Format {
         Err(self.deviation(offset, expected, found))
     }
 
-    /// A deviation at byte `offset`.
+    /// Makes a deviation at byte `offset`.
     pub(crate) const fn deviation(self, offset: u32, expected: Expected, found: u32) -> Deviation {
         Deviation {
             format: self,

@@ -69,7 +69,7 @@ features! {
     FIELD = "field";
     /// Spheres in a field, alone and in unions.
     SPHERES = "spheres";
-    /// Fog.
+    /// Fog on meshes and fields.
     FOG = "fog";
     /// A mesh in a field.
     MESH_IN_FIELD = "mesh-in-field";
@@ -95,7 +95,7 @@ features! {
     OVERLAY = "overlay";
     /// Demo, which shows scenes in turn without a host; scenes, lists and meshes from the flash.
     DEMO = "demo";
-    /// Benchmarks.
+    /// The command `bench`, which measures clock cycles.
     BENCH = "bench";
 }
 

@@ -56,7 +56,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// All kinds.
+    /// All kinds, in the order of their numbers.
     pub const ALL: [Self; 4] = [Self::Mesh, Self::Scene, Self::List, Self::Texture];
 
     /// Name for messages.
@@ -73,7 +73,7 @@ impl Kind {
 /// An item of the contents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Item<'a> {
-    /// Kind.
+    /// Kind of the contents.
     pub kind: Kind,
     /// Name: 1 to 24 visible characters of ASCII.
     pub name: &'a str,
@@ -171,7 +171,7 @@ impl<'a> Contents<'a> {
         Ok(contents)
     }
 
-    /// Number of bytes.
+    /// Length in bytes, with the list of the items.
     pub const fn length(&self) -> usize {
         self.bytes.len()
     }
@@ -250,7 +250,7 @@ pub struct Image<'a> {
     pub bitstream: Option<&'a [u8]>,
     /// The firmware, without its header.
     pub firmware: &'a [u8],
-    /// The contents.
+    /// The items after the firmware.
     pub contents: Contents<'a>,
 }
 

@@ -228,7 +228,7 @@ impl<'a> Chunk<'a> {
         self.vertices.len()
     }
 
-    /// Number of triangles.
+    /// Number of triangles in the chunk.
     pub const fn triangle_count(&self) -> usize {
         self.triangles.len()
     }

@@ -257,7 +257,7 @@ impl Writer<'_> {
         let half = i32::from(HALF.to_bits());
         for ([(right, along), (up, upwards)], _) in SIDES {
             let out = 3 - right - up;
-            // The cross product of axes in cyclic order is the third one.
+            // The cross product of two axes in cyclic order is the third axis.
             let is_cyclic = (right + 1) % 3 == up;
             let outwards = along * upwards * if is_cyclic { 1 } else { -1 };
             for [x, y] in CORNERS {
@@ -278,7 +278,7 @@ impl Writer<'_> {
             return Some(());
         }
         let places = SIDES.iter().flat_map(|(_, has_star)| {
-            // The texture contains two sides, one next to the other.
+            // The texture contains pictures of two sides, next to each other.
             let left = i32::from(*has_star) << 15;
             CORNERS.map(|[x, y]| TextureCoordinates {
                 s: left + (x << 15),
@@ -292,7 +292,7 @@ impl Writer<'_> {
         self.pictures(&[wood::PICTURE])
     }
 
-    /// Writes the atrium.
+    /// Writes the mesh of [`Shape::Atrium`].
     fn atrium(&mut self) -> Option<()> {
         atrium::faces(&mut |face| {
             let [a, b, c, _] = face.corners;
@@ -318,7 +318,7 @@ impl Writer<'_> {
     /// Begins the array of texture coordinates after the triangles.
     fn coordinates(&mut self) -> Option<Coordinates<'_>> {
         self.attributes = Attribute::TextureCoordinates.bit() | TEXTURES;
-        // Two vertices in a word; faces have four.
+        // A word contains the coordinates of two vertices, and a face has four vertices.
         self.more = usize::from(self.vertices) / 2;
         let start = HEADERS + usize::from(self.vertices) + usize::from(self.triangles);
         let array = self.records.get_mut(start..start + self.more)?;

@@ -12,7 +12,7 @@ pub enum Move {
     Previous,
 }
 
-/// The current scene of a list, and the end of its time. Times are in milliseconds since start.
+/// The current scene of a list, and the time at which it ends. Times are in milliseconds since the start.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Demo {
     /// Number of scenes; 0 while the demo is off.
@@ -118,7 +118,7 @@ mod tests {
         let mut demo = started(3);
         let mut shown = (0..10).map(|turn| demo.poll(turn * TURN_MS));
         assert!((0..10).all(|turn| shown.next().flatten() == Some(turn % 3)));
-        assert_eq!(demo.poll(10 * TURN_MS - 1), None, "the turn goes on");
+        assert_eq!(demo.poll(10 * TURN_MS - 1), None, "the scene stays");
         demo.stop();
         assert_eq!((demo.poll(u64::MAX), demo.number()), (None, None));
     }
@@ -142,7 +142,7 @@ mod tests {
         demo.hold(1, true);
         assert_eq!(demo.poll(100 * TURN_MS), None);
         demo.go(Move::Next);
-        assert_eq!(demo.poll(101 * TURN_MS), Some(1), "moves are not held");
+        assert_eq!(demo.poll(101 * TURN_MS), Some(1), "a hold allows moves");
         assert_eq!(demo.poll(200 * TURN_MS), None);
         demo.hold(200 * TURN_MS, false);
         assert_eq!(demo.poll(201 * TURN_MS - 1), None);

@@ -10,7 +10,7 @@
 
 use core::fmt;
 
-/// Digits of a display.
+/// Number of digits of a display.
 pub const COUNT: usize = 4;
 
 /// The lit segments of a character: bits 0 to 6 for a to g. A character that is not defined here lights no segment.
@@ -128,7 +128,7 @@ mod tests {
         let all: Vec<u8> = "0123456789ACEL- ".chars().map(segments).collect();
         for (place, segments) in all.iter().enumerate() {
             assert!(!all[..place].contains(segments));
-            assert!(*segments < 0x80, "the point is dark");
+            assert!(*segments < 0x80, "the decimal point is off");
         }
         assert_eq!(segments('x'), segments(' '));
     }

@@ -17,21 +17,21 @@ pub enum FieldError<'a> {
     },
     /// This build lacks this kind of field.
     LeftOut {
-        /// The kind.
+        /// Name of the kind.
         kind: &'a str,
         /// The feature that contains the kind.
         feature: Feature,
     },
     /// A number is missing.
     Missing {
-        /// The kind.
+        /// Name of the kind.
         kind: &'a str,
         /// Name of the number.
         name: &'static str,
     },
     /// A number is surplus.
     Extra {
-        /// The kind.
+        /// Name of the kind.
         kind: &'a str,
         /// The first surplus word.
         word: &'a str,
@@ -40,7 +40,7 @@ pub enum FieldError<'a> {
     Number {
         /// Name of the number.
         name: &'static str,
-        /// The word.
+        /// The word that was given.
         word: &'a str,
     },
     /// The text of a union does not name two kinds that a union accepts.

@@ -87,7 +87,7 @@ macro_rules! primitives {
                 }
             }
 
-            /// The spheres of a list in field units, of which a world unit has `scale`; `None` for other fields.
+            /// The spheres of a list in field units, with `scale` field units per world unit; `None` for other fields.
             pub fn spheres(&self, scale: Q32_32) -> Option<FixedSpheres> {
                 match self {
                     $(Self::$kind(shape) if is_built::<$shape>() => shape.spheres(scale),)*

@@ -44,8 +44,8 @@ pub trait FieldKind: Sized {
     /// Converts the field to its solid in field units.
     fn placed(&self) -> Placed<Self::Solid>;
 
-    /// The field's spheres in field units, of which a world unit has `scale`; `None` for a kind of field that cannot be the second member of
-    /// a union.
+    /// The field's spheres in field units, with `scale` field units per world unit; `None` for a kind of field that cannot be the second
+    /// member of a union.
     fn spheres(&self, scale: Q32_32) -> Option<FixedSpheres> {
         let _ = scale;
         None
@@ -64,7 +64,7 @@ pub enum Member {
 /// A solid with lengths in field units, with its scale and its bounding box in the world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Placed<S> {
-    /// The solid.
+    /// The solid, with lengths in field units.
     pub solid: S,
     /// Field units per world unit: 4 to 256.
     pub scale: Q32_32,
@@ -137,7 +137,7 @@ pub trait FlatSolid: Sized {
 /// solid does not use it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FlatConstants {
-    /// [`FlatSolid::CODE`].
+    /// The solid's number, [`FlatSolid::CODE`].
     pub kind: u8,
     /// Levels of the sponge to evaluate, one bit per level, the first level in bit 0.
     pub levels: u8,

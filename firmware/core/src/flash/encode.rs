@@ -13,11 +13,11 @@ use crate::wire::crc32;
 /// An item to encode.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Piece {
-    /// Kind.
+    /// Kind of the contents.
     pub kind: Kind,
     /// Name: 1 to 24 visible characters of ASCII.
     pub name: alloc::string::String,
-    /// Contents.
+    /// The bytes of the item.
     pub bytes: Vec<u8>,
 }
 

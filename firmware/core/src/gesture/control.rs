@@ -11,12 +11,12 @@ use crate::fixed::{Q4_28, Q32_32, Turns, U16_16, U20_12};
 /// Smallest run of pixels that the engine counts in the whole frame. With 5 % of noise pixels, one of 1,000 frames of 320×240 has
 /// a noise run of this length.
 pub const RUN_SEARCHING: u8 = 6;
-/// Smallest run that counts in the region around a hand in motion: shorter, because the region contains less noise, and so that
-/// narrow parts of the hand count.
+/// Smallest run that counts in the region around a hand in motion. This run is shorter, because the region contains less noise than the
+/// whole frame, and because narrow parts of the hand must count.
 pub const RUN_MOVING: u8 = 4;
 /// Smallest run that counts in the smaller region around a hand at rest, so that fingertips 5 pixels wide count.
 pub const RUN_RESTING: u8 = 3;
-/// Time in µs for which a lost hand is searched for in its region only. Afterwards the whole frame is searched. This is
+/// Time in µs for which only the region of a lost hand is searched. Afterwards the whole frame is searched. This time is
 /// also the longest pause between two frames after which tracking continues.
 pub const PATIENCE: u32 = 250_000;
 /// Number of successive frames that must show a hand before it moves the camera.
@@ -46,7 +46,7 @@ const RETURN: U16_16 = U16_16::lit("1");
 /// A position of the camera on a sphere about the origin, for [`View::spherical`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pose {
-    /// Azimuth.
+    /// Azimuth, about the z axis.
     pub theta: Turns,
     /// Polar angle, at least [`POLE`](super::POLE) away from 0 and from half a turn.
     pub phi: Turns,
@@ -73,7 +73,7 @@ pub enum Presence {
     Appearing,
     /// The hand steers the camera.
     Tracked,
-    /// The hand was lost recently and is searched for in its region; the camera stays.
+    /// The hand was lost recently, and its region is searched; the camera stays.
     Held,
 }
 

@@ -1,5 +1,5 @@
-//! Quotients of numbers of 64 bits by divisions of 32 bits, for which the soft core has an instruction. The division of the compiler's library takes longer: it
-//! subtracts bit by bit.
+//! Quotients of 64-bit numbers, computed by 32-bit divisions, for which the soft core has an instruction. The division of the compiler's
+//! library takes longer, because it subtracts bit by bit.
 //!
 //! After D. E. Knuth, The Art of Computer Programming, volume 2, 4.3.1, algorithm D, with digits of 16 bits.
 

@@ -23,9 +23,9 @@ const MIN_SINE: i64 = 1 << 20;
 /// An axis of the world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
-    /// The first axis.
+    /// The first horizontal axis.
     X,
-    /// The second axis.
+    /// The second horizontal axis.
     Y,
     /// The axis z, which points up.
     Z,
@@ -375,28 +375,28 @@ impl Normals {
 pub enum MatrixError {
     /// An entry of the 3×3 matrix is out of range.
     Entry {
-        /// The row.
+        /// Number of the row.
         row: usize,
         /// Entries of the row.
         entries: [Q8_24; 3],
     },
     /// A component of the translation is out of range.
     Translation {
-        /// The row.
+        /// Number of the row.
         row: usize,
-        /// The component.
+        /// Value of the component.
         distance: Q8_24,
     },
     /// A row of the 3×3 matrix is shorter than [`MIN_ROW`].
     Short {
-        /// The row.
+        /// Number of the row.
         row: usize,
         /// Entries of the row.
         entries: [Q8_24; 3],
     },
     /// A row of the 3×3 matrix is nearly a linear combination of the rows before it.
     Singular {
-        /// The row.
+        /// Number of the row.
         row: usize,
     },
 }

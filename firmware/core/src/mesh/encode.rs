@@ -201,9 +201,9 @@ pub enum EncodeError {
     Index {
         /// Number of the triangle.
         triangle: usize,
-        /// The index.
+        /// The index of the missing vertex.
         index: u32,
-        /// Number of vertices.
+        /// Number of vertices in the mesh.
         vertices: usize,
     },
     /// The mesh exceeds [`MAX_BYTES`].

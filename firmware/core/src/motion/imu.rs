@@ -153,7 +153,7 @@ impl<E: Copy> Imu<E> {
             .map(|bias| mpu6050::degrees_per_second(bias.into()))
     }
 
-    /// Starts a calibration with this number of samples. A calibration in progress is dropped.
+    /// Starts a calibration with this number of samples. A calibration in progress is cancelled.
     pub fn calibrate(&mut self, samples: u32) {
         self.calibrating = match self.error {
             Some(error) => Calibrating::Ended(Err(CalibrationError::Failed(error))),
@@ -162,7 +162,7 @@ impl<E: Copy> Imu<E> {
         };
     }
 
-    /// Number of samples that the calibration in progress has taken; `None` without one.
+    /// Number of samples that the current calibration has taken; `None` without a calibration in progress.
     pub const fn calibrated_samples(&self) -> Option<u32> {
         match self.calibrating {
             Calibrating::Going(_, samples) => Some(samples),
@@ -170,7 +170,7 @@ impl<E: Copy> Imu<E> {
         }
     }
 
-    /// The done part of the calibration in progress in eighths, 0 to 7; `None` without one.
+    /// Progress of the current calibration in eighths, 0 to 7; `None` without a calibration in progress.
     pub const fn calibrated_eighths(&self) -> Option<u32> {
         match &self.calibrating {
             // At most 2^16 samples are wanted, and fewer are taken.
@@ -187,7 +187,7 @@ impl<E: Copy> Imu<E> {
         }
     }
 
-    /// Mode in which the sensor steers the camera; `None` if it does not.
+    /// Mode in which the sensor steers the camera; `None` without steering.
     pub const fn follow(&self) -> Option<Follow> {
         self.follow
     }

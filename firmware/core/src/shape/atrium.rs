@@ -1,8 +1,8 @@
 //! The atrium: a room without a ceiling, open at two sides, around a space for a solid in [-1, 1]³. It has two walls with windows, two
 //! plants and a screen of glass.
 //!
-//! Lengths of the tables are in hundredths of a world unit; positions of faces are in Q2.14. One wall with its window and its plant is
-//! the other's image by the reflection that exchanges x and −y.
+//! Lengths of the tables are in hundredths of a world unit; positions of faces are in Q2.14. Each wall with its window and its plant is
+//! the mirror image of the other wall; the reflection exchanges x and −y.
 
 use super::number::{ONE, scaled, sin_cos};
 use super::paint;
@@ -11,7 +11,7 @@ use crate::fixed::Turns;
 use crate::records::TextureCoordinates;
 use crate::texture::Picture;
 
-/// The textures, by their numbers from 1. The last one is blended, so its faces come last.
+/// The textures, by their numbers from 1. The last texture is blended, so its faces come last.
 pub const PICTURES: [Picture; 6] = [
     paint::TILES,
     paint::BRICKS,
@@ -29,7 +29,7 @@ const LEAVES: u8 = 4;
 const POT: u8 = 5;
 const GLASS: u8 = 6;
 
-/// Colour of faces that the sun reaches, and of those in the shadow of the solid.
+/// Colours of faces in sunlight, and of faces in the shadow of the solid.
 const LIT: Rgb565 = Rgb565::WHITE;
 const SHADOW: Rgb565 = Rgb565::from_rgb888([0x78, 0x78, 0x84]);
 /// Colour of the soil in a pot.
@@ -44,8 +44,8 @@ const OUTSIDE: i16 = -197;
 /// Height of the walls.
 const TOP: i16 = 120;
 
-/// The floor, in quadrangles; two equal corners make a triangle. The last two are the shadow of the cube [-1, 1]³ in the light of the
-/// direction (0.82, −0.62, 2).
+/// The floor, in quadrangles; two equal corners make a triangle. The last two quadrangles are the shadow of the cube [-1, 1]³ in
+/// light from the direction (0.82, −0.62, 2).
 const GROUND: [[[i16; 2]; 4]; 8] = {
     let [p, q, r, s] = [[-190, -197], [197, -197], [197, 190], [-190, 190]];
     let [a, b, c] = [[-100, -100], [100, -100], [100, 100]];
@@ -64,16 +64,16 @@ const GROUND: [[[i16; 2]; 4]; 8] = {
 /// The number of quadrangles of [`GROUND`] that are not in the shadow.
 const SUNNY: usize = 6;
 
-/// Rectangles of a wall about its window: ends along y, and along z.
+/// Rectangles of a wall around its window: the two ends along y, and the two ends along z.
 const BRICKWORK: [[[i16; 2]; 2]; 4] = [
     [[WALL, -155], [FLOOR, TOP]],
     [[-65, -WALL], [FLOOR, TOP]],
     [[-155, -65], [FLOOR, -5]],
     [[-155, -65], [90, TOP]],
 ];
-/// The glass of a window: ends along y, and along z.
+/// The glass of a window: the two ends along y, and the two ends along z.
 const PANES: [[i16; 2]; 2] = [[-149, -71], [1, 84]];
-/// The glass of the screen: x, ends along y, and along z.
+/// The glass of the screen: x, the two ends along y, and the two ends along z.
 const SCREEN: (i16, [[i16; 2]; 2]) = (150, [[-155, -55], [-90, 25]]);
 
 /// A beam of wood.
@@ -82,7 +82,7 @@ struct Beam {
     from: [i16; 3],
     /// The corner with the largest coordinates.
     to: [i16; 3],
-    /// A bit for each of [`SIDES`] that can be seen.
+    /// The visible sides: one bit for each of [`SIDES`].
     sides: u8,
 }
 
@@ -90,7 +90,7 @@ const fn beam(from: [i16; 3], to: [i16; 3], sides: u8) -> Beam {
     Beam { from, to, sides }
 }
 
-// The sides of a box: the bits of a beam.
+// The sides of a box, as bits of [`Beam::sides`].
 const FRONT: u8 = 1;
 const RIGHT: u8 = 2;
 const BACK: u8 = 4;
@@ -98,7 +98,8 @@ const LEFT: u8 = 8;
 const UPPER: u8 = 16;
 const LOWER: u8 = 32;
 
-/// Corners of the sides of a box, counter-clockwise from the lower left as seen from outside: whether they have the larger x, y and z.
+/// Corners of the sides of a box, counter-clockwise from the lower left as seen from outside: 1 for the larger x, y or z, 0 for the
+/// smaller one.
 const SIDES: [[[usize; 3]; 4]; 6] = [
     [[0, 0, 0], [1, 0, 0], [1, 0, 1], [0, 0, 1]],
     [[1, 0, 0], [1, 1, 0], [1, 1, 1], [1, 0, 1]],
@@ -165,7 +166,7 @@ const OTHERS: [Beam; 5] = [
     beam([147, -155, FLOOR], [153, -55, -90], RIGHT | LEFT | UPPER),
 ];
 
-/// Place of a plant, along x and along y.
+/// Position of a plant, along x and along y.
 const PLANT: i16 = -145;
 /// Height of the rim of a pot.
 const RIM: i16 = -64;
@@ -198,7 +199,7 @@ impl Face {
         }
     }
 
-    /// The image by the reflection that exchanges x and −y.
+    /// The mirror image of the face; the reflection exchanges x and −y.
     fn mirrored(self) -> Self {
         let [a, b, c, d] = self.corners.map(|[x, y, z]| [-y, -x, z]);
         Self {
@@ -207,8 +208,8 @@ impl Face {
         }
     }
 
-    /// Texture coordinates of the corners. Tiles, bricks and wood have a repeat in each world unit, and the grain of wood is along
-    /// the face; leaves, pots and glass have one picture.
+    /// Texture coordinates of the corners. Tiles, bricks and wood repeat once per world unit, and the grain of wood runs along
+    /// the longer side of the face; faces of leaves, pots and glass show the whole texture once.
     pub fn coordinates(&self) -> [TextureCoordinates; 4] {
         if !matches!(self.texture, TILES | BRICKS | WOOD) {
             return [[0, 1], [1, 1], [1, 0], [0, 0]].map(|[s, t]| TextureCoordinates {
@@ -242,7 +243,7 @@ fn place(hundredths: i16) -> i32 {
     i32::from(hundredths) * i32::from(ONE) / 100
 }
 
-/// Calls `each` with all faces, those of glass last, until it returns `None`.
+/// Calls `each` with every face, faces of glass last, until `each` returns `None`.
 pub fn faces(each: &mut dyn FnMut(Face) -> Option<()>) -> Option<()> {
     for (number, corners) in GROUND.iter().enumerate() {
         let face = Face::new(corners.map(|[x, y]| [x, y, FLOOR]), TILES);

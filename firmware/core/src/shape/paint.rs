@@ -3,7 +3,7 @@
 use crate::colour::Rgb565;
 use crate::texture::{Blend, Picture};
 
-/// Base-2 logarithms of the sides of the large pictures, and of the small ones.
+/// Base-2 logarithms of the sides of the large pictures, and of the small pictures.
 const LARGE: [u8; 2] = [6; 2];
 const SMALL: [u8; 2] = [5; 2];
 /// Width and height of the large pictures in texels.
@@ -15,14 +15,14 @@ pub const TILES: Picture = picture(LARGE, tile);
 pub const BRICKS: Picture = picture(LARGE, brick);
 /// Wood, whose grain is along the rows.
 pub const WOOD: Picture = picture(SMALL, wood);
-/// Narrow leaves that grow from the middle of the lower side, cut out.
+/// Narrow leaves that grow from the middle of the lower side, on a transparent background.
 pub const LEAVES: Picture = Picture {
     is_cut_out: true,
     ..picture(LARGE, leaf)
 };
 /// Burnt clay with a rim.
 pub const POT: Picture = picture(SMALL, clay);
-/// Blue glass with two diagonal gleams, three eighths opaque.
+/// Blue glass with two diagonal reflections; its opacity is three eighths.
 pub const GLASS: Picture = Picture {
     blend: Blend::ALL[3],
     ..picture(SMALL, pane)
@@ -39,7 +39,7 @@ const ENDS: [[i32; 2]; 8] = [
     [20, 50],
     [27, 42],
 ];
-/// The colours of the leaves, in turn.
+/// The colours that the leaves have in turn.
 const GREENS: [[u8; 3]; 4] = [
     [0x40, 0x78, 0x2C],
     [0x54, 0x94, 0x36],
@@ -109,7 +109,7 @@ fn leaf([x, y]: [u32; 2]) -> Option<Rgb565> {
         if across.abs() > width {
             continue;
         }
-        // A bright rib, and one half darker than the other.
+        // A leaf has a bright rib, and its right half is darker than its left half.
         let rib = if across.abs() <= 1 { 22 } else { 0 };
         let half = if across < 0 { 0 } else { 14 };
         let foot = if height < 10 { 30 } else { 0 };
@@ -140,7 +140,7 @@ fn shaded(colour: [u8; 3], darker: u32) -> Option<Rgb565> {
     Some(Rgb565::from_rgb888(colour))
 }
 
-/// A pseudo-random number of 16 bits for a place.
+/// A pseudo-random number of 16 bits for a position.
 fn noise([x, y]: [u32; 2]) -> u32 {
     let key = x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA6B);
     (key ^ key >> 15).wrapping_mul(0xC2B2_AE35) >> 16

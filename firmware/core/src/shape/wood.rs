@@ -38,7 +38,7 @@ const OUTLINE: usize = 13;
 const GOLD: usize = 14;
 const BRIGHT: usize = 15;
 
-/// The colours: a gap, five of planks, the edge and four of boards of the frame, two of nails, three of the star.
+/// The colours: one of a gap, five of planks, one of the edges and four of the boards of the frame, two of nails, three of the star.
 const COLOURS: [Rgb565; 16] = [
     Rgb565::from_rgb888([0x28, 0x18, 0x0C]),
     Rgb565::from_rgb888([0x70, 0x46, 0x24]),

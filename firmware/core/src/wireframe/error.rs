@@ -9,9 +9,9 @@ use crate::words::Word;
 /// A deviation of a program from its format, with its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProgramError<'a> {
-    /// The place.
+    /// Position of the deviation.
     pub place: Location,
-    /// The deviation.
+    /// The expected input and the input that was found.
     pub violation: Violation<'a>,
 }
 
@@ -98,11 +98,11 @@ pub enum Expected {
 pub enum Found<'a> {
     /// The three bits of an opcode.
     Opcode(u8),
-    /// Some bits.
+    /// Bits that should be 0.
     Bits(u32),
     /// This count of bytes.
     Bytes(usize),
-    /// A number.
+    /// A number in Q5.11.
     Number(Q5_11),
     /// This count of numbers.
     Count(usize),

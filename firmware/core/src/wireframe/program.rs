@@ -9,7 +9,7 @@ use crate::fixed::Q5_11;
 /// the window is not empty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Viewing {
-    /// The eye.
+    /// Position of the eye.
     pub eye: Point,
     /// The z of the view plane.
     pub plane: Q5_11,
@@ -152,7 +152,7 @@ impl<'a> Program<'a> {
         Err(violation.at(Location::Word(words.len() + 1)))
     }
 
-    /// The viewing parameters.
+    /// The eye, the view plane and the window.
     pub const fn viewing(&self) -> &Viewing {
         &self.viewing
     }

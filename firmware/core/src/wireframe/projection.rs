@@ -107,7 +107,7 @@ impl Projection {
         }
     }
 
-    /// Computes the point in which a segment from a point behind the view plane to a point in front of it crosses the plane.
+    /// Computes the point at which a segment from a point behind the view plane to a point in front of it crosses the plane.
     fn cut(&self, [x, y, z]: [i64; 3], [x2, y2, z2]: [i64; 3]) -> [i64; 3] {
         // All differences are below 2^27.
         let along = |from, to| from + nearest((to - from) * (self.plane - z), z2 - z);
@@ -160,9 +160,9 @@ impl Fraction {
     }
 }
 
-/// Clips the segment's end `a` to the guard band: returns `a`, or the point in which the segment enters the guard band. `None` if
+/// Clips the segment's end `a` to the guard band: returns `a`, or the point at which the segment enters the guard band. `None` if
 /// the whole segment is outside.
-// Not inlined, as `enter`, so that the code for a line takes few lines of the instruction cache.
+// Neither this function nor `enter` is inlined, so that the code that draws a line occupies few lines of the instruction cache.
 #[inline(never)]
 fn end(a: [Fraction; 2], b: [Fraction; 2]) -> Option<[i32; 2]> {
     if a.iter().all(|axis| axis.is_inside()) {
@@ -171,7 +171,7 @@ fn end(a: [Fraction; 2], b: [Fraction; 2]) -> Option<[i32; 2]> {
     enter(a, b)
 }
 
-/// Returns the point in which the segment from an end `a` outside of the guard band enters it; `None` if the whole segment is outside.
+/// Returns the point at which the segment from an end `a` outside of the guard band enters it; `None` if the whole segment is outside.
 ///
 /// For each side of the guard band between `a` and `b`, the position of the crossing on the other axis is exact. The crossing
 /// that lies within the guard band becomes the end; it is rounded last.

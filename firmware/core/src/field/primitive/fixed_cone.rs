@@ -55,7 +55,7 @@ impl FixedCone {
         }
     }
 
-    /// The apex.
+    /// Position of the apex, s10.12.
     pub const fn apex(&self) -> [i32; 3] {
         [0, 0, self.half]
     }

@@ -12,7 +12,7 @@ use crate::field::surface::units;
 use crate::fixed::{Q2_30, Q32_32, Turns};
 use crate::trig::sin_cos_q30;
 
-/// A sphere.
+/// A sphere of the list [`Spheres`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sphere {
     /// Centre, in world units.

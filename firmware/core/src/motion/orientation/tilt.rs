@@ -22,11 +22,11 @@ use crate::fixed::{Turns, wide};
 pub const TIME_CONSTANT: u32 = 3_000_000;
 /// Smallest and largest accepted LSB per g.
 pub const LSB_PER_G: [u32; 2] = [1_024, 32_767];
-/// Weight of an attitude from a single reading, as a time in µs: it has the weight of the mean of readings over this time.
+/// Weight of an attitude from a single reading, as a time in µs: the attitude has the weight of the mean of readings over this time.
 pub const FRESH: u32 = 20_000;
-/// Largest weight of an attitude after saturation of the gyroscope or after a gap, as a time in µs: it has the weight of the mean
-/// of readings over this time. A short saturation changes the attitude little, and the accelerometer corrects the error within
-/// ten times this time.
+/// Largest weight of an attitude after saturation of the gyroscope or after a gap, as a time in µs: the attitude has the
+/// weight of the mean of readings over this time. A short saturation changes the attitude little, and the accelerometer corrects
+/// the error within ten times this time.
 pub const DOUBTFUL: u32 = 100_000;
 /// Largest accepted reading, in g.
 const MOST: u32 = 3;
@@ -40,7 +40,7 @@ pub(super) enum FirstReading {
     Gravity,
     /// The reading is too small to have a direction.
     FreeFall,
-    /// The reading is beyond the largest accepted one.
+    /// The reading exceeds the largest accepted reading.
     Rejected,
 }
 

@@ -44,19 +44,19 @@ const LARGEST_BIAS: i32 = 1 << 30;
 /// of order do not count as a restart.
 const RESTART: u8 = 4;
 
-/// The samples since the last step whose times do not follow it. They show whether single times were
-/// wrong or the clock has restarted.
+/// The samples since the last step whose times do not follow this step. These samples show whether single times
+/// were wrong or the clock has restarted.
 #[derive(Clone, Copy, Debug, Default)]
 struct Detour {
     /// Time of the first sample after the latest gap.
     start: u64,
     /// Time of the tracker's last sample before the first gap, and the age of the tilt at that time.
     before: Option<(u64, u32)>,
-    /// Number of gaps since then.
+    /// Number of gaps since the time `before`.
     gaps: u64,
-    /// Time of the tracker's last sample before the stale ones.
+    /// Time of the tracker's last sample before the stale samples.
     last: u64,
-    /// Time of the latest stale sample, and number of successive ones in order.
+    /// Time of the latest stale sample, and number of successive stale samples in the order of their times.
     stale: u64,
     in_order: u8,
 }
@@ -175,8 +175,8 @@ impl Tracker {
     }
 
     /// Takes the first sample, which starts the attitude, and all samples until a reading shows the direction of gravity. Up to that
-    /// reading the attitude is the rotation since the first sample. The reading is rotated back to the first sample, whose tilt it
-    /// gives.
+    /// reading the attitude is the rotation since the first sample. The tilt of the first sample follows
+    /// from the reading, rotated back to this sample.
     #[cold]
     #[inline(never)]
     fn begin(&mut self, sample: &Sample) -> SampleEffect {
@@ -215,12 +215,12 @@ impl Tracker {
     #[inline(never)]
     fn hold(&mut self, sample: &Sample, last: u64) -> SampleEffect {
         let mut detour = self.detour;
-        // After a longer series of valid steps, the times after the gaps count as right.
+        // After a longer series of valid steps, the times after the gaps count as correct.
         let since = last.wrapping_sub(detour.start);
         if since > u64::from(LONGEST_STEP) {
             detour.before = None;
         }
-        // The time of the steps since the gap has been integrated.
+        // The steps since the gap were integrated, so their duration is added to the time before the gap.
         let before = detour.before;
         let before = before.map(|(before, age)| (before.wrapping_add(since), age));
         if let Some((before, age)) = before
