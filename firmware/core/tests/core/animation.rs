@@ -1,4 +1,4 @@
-//! Tests of rates: after seconds to a year, angles equal those of exact arithmetic.
+//! Tests of rates: for times of up to a year, angles equal the results of exact arithmetic.
 
 use glint_core::animation::Rate;
 use glint_core::fixed::{Q32_32, U32_32};

@@ -1,8 +1,9 @@
-//! Bit fields of records, compared with single bits.
+//! Tests of the bit fields of records, compared with single bits of values.
 
 use glint_core::bits::Bits;
 
-/// Each field of 1 to 34 bits in three words, also one that ends beyond them, is set to the lowest bits of a value, and is read back.
+/// Each field of 1 to 34 bits that begins in three words is set to the lowest bits of a value, and is read back. A field may end beyond
+/// the words.
 #[test]
 fn fields_have_the_lowest_bits_of_a_value() {
     for (at, width) in (0..96).flat_map(|at| (1..=34).map(move |width| (at, width))) {

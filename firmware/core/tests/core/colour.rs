@@ -6,7 +6,7 @@ fn rounded(rgb: [u8; 3], rounding: Rounding, place: [u32; 2]) -> Rgb565 {
     Rgb565::rounded(Rgb565::with_fractions(rgb), rounding, place)
 }
 
-/// The mean over a pattern is near the given channel, grows with it, and is exact at both ends.
+/// The mean over a dither pattern is near the given channel and never decreases as the channel grows; it is exact for 0 and 255.
 #[test]
 fn dithering_keeps_the_mean() {
     let mut worst = 0.0_f64;
@@ -35,7 +35,7 @@ fn dithering_keeps_the_mean() {
     }
 }
 
-/// Without dithering, a channel becomes the nearest of the values that the monitor shows, or one that is farther by 1/255.
+/// Without dithering, a channel becomes the nearest of the values that the monitor shows, or a value that is farther by 1/255.
 #[test]
 fn without_dithering_a_channel_is_nearest() {
     for channel in 0..=255_u8 {

@@ -1,4 +1,4 @@
-//! The font in a texture, against its source.
+//! Tests of the font in a texture against the font's source.
 
 use embedded_graphics::geometry::Point;
 use embedded_graphics::image::GetPixel;
@@ -8,7 +8,8 @@ use glint_core::colour::Rgb565;
 use glint_core::font::Font;
 use glint_core::texture::{Filter, Texture};
 
-/// A line has a rectangle for each character but the space, whose part of the texture is the character; any text gives a line.
+/// A line has one rectangle for each character except the space, and the rectangle shows the character's part of the texture. Every text
+/// gives a line.
 #[test]
 fn a_line_shows_its_characters() {
     let mut memory = [0; Font::BYTES];

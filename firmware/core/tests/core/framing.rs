@@ -104,7 +104,7 @@ proptest! {
     }
 }
 
-/// The largest part of the half width or of the half height, of a picture with the sides 16:9, at which a camera shows one of the points.
+/// Returns the largest distance of a point from the middle of a 16:9 picture, as a part of the half width or of the half height.
 fn largest_part(view: &View, points: &[Vector]) -> f64 {
     let eye = view.eye().map(|x| x.to_num::<f64>());
     let axes = [view.u(), view.v(), view.n()].map(|row| row.map(|x| x.to_num::<f64>()));

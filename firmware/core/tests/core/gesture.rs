@@ -111,7 +111,7 @@ fn place_and_width_become_a_place_on_the_sphere() {
     let near = |found: [f64; 3], expected: [f64; 3]| {
         assert!(
             core::iter::zip(found, expected).all(|(a, b)| (a - b).abs() < 1e-4),
-            "{found:?} is not {expected:?}"
+            "expected {expected:?}, found {found:?}"
         );
     };
     // A hand in the middle, with a quarter of the frame's width and height.
@@ -150,7 +150,7 @@ fn the_lag_behind_a_steady_motion_is_that_of_the_corner_frequency() {
             let expected = 1.0 / (std::f64::consts::TAU * (2.0 + 10.0 * speed));
             assert!(
                 (lag / expected - 1.0).abs() < 2e-3,
-                "{speed} at {rate}: {lag} s, not {expected} s"
+                "speed {speed}, rate {rate}: expected a lag of {expected} s, found {lag} s"
             );
         }
     }

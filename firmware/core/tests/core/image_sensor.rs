@@ -101,7 +101,7 @@ fn chip(model: Model) -> Chip {
 fn run<T>(future: impl Future<Output = T>) -> T {
     match pin!(future).poll(&mut Context::from_waker(Waker::noop())) {
         Poll::Ready(result) => result,
-        Poll::Pending => panic!("nothing to wait for"),
+        Poll::Pending => panic!("expected a future that is ready at once"),
     }
 }
 
@@ -133,7 +133,11 @@ fn the_known_chips_are_set_up() {
                     let reset = ["S 78+ 31+ 03+ 11+ P", "S 78+ 30+ 08+ 82+ P"];
                     assert_eq!(writes[..2], reset, "first the reset");
                     let wake = "S 78+ 30+ 08+ 02+ P";
-                    assert_eq!(writes.last().unwrap(), &wake, "at last the end of sleep");
+                    assert_eq!(
+                        writes.last().unwrap(),
+                        &wake,
+                        "the last write ends the sleep"
+                    );
                     assert_eq!([0x4300, 0x501f].map(register), [0x61, 0x01]);
                     let size = [0x3808, 0x380a]
                         .map(|high| u16::from_be_bytes([high, high + 1].map(register)));
@@ -152,7 +156,7 @@ fn absent_and_unknown_chips_are_errors() {
     let refused = || {
         let error = line.start(FrameSize::Qvga).expect_err("refused");
         let writes = line.0.borrow().device.chip.writes;
-        assert_eq!(writes, 0, "an unknown chip is left as it is");
+        assert_eq!(writes, 0, "no register of an unknown chip is written");
         error.to_string()
     };
     let set_fault = |fault| line.0.borrow_mut().device.set_fault(Some(fault));

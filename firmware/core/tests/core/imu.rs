@@ -91,7 +91,7 @@ fn the_camera_follows_and_can_be_recentred() {
     let mut imu = running();
     assert_eq!(imu.view(EYE, RADIUS), None);
     imu.set_follow(Some(Follow::Look));
-    assert_eq!(imu.view(EYE, RADIUS), None, "nothing was measured yet");
+    assert_eq!(imu.view(EYE, RADIUS), None, "no sample has arrived yet");
     // The sensor turns by 90° to the left in a second.
     let turning = Measurement {
         gyro: [0, 0, 1_476],
@@ -112,7 +112,11 @@ fn the_camera_follows_and_can_be_recentred() {
         (view.n().map(|x| x.to_num()), view.eye().map(|x| x.to_num()))
     };
     near(forward(&mut imu).0, [-1.0, 0.0, 0.0]);
-    assert_eq!(imu.view(EYE, RADIUS), None, "it has not moved since");
+    assert_eq!(
+        imu.view(EYE, RADIUS),
+        None,
+        "the camera has not moved since the last call"
+    );
     imu.recentre();
     near(forward(&mut imu).0, [0.0, 1.0, 0.0]);
     imu.set_follow(Some(Follow::Orbit));

@@ -27,7 +27,7 @@ fn a_new_conversation_ends_a_transfer_that_was_left() {
     let length = wire::reset(&mut reset);
     let reset = &reset[..length];
     let (mut small, mut large) = ([0; 10], [0; 300]);
-    // The frame that cancels comes before the first frame, and within a frame.
+    // The frame that cancels the transfer arrives before the first frame, and within a frame.
     for mut receiver in [
         Receiver::new(&mut small, None, Timing::CONSOLE, 0),
         left_alone(&mut large),

@@ -111,8 +111,8 @@ fn volumes_against_f64() {
     assert!(worst[0] <= 0.51 && worst[1] <= 8.0 && worst[2] <= 1e-6);
 }
 
-/// Sides around the axis in the shape of the picture are the lens that a half width makes, bit for bit, and a matrix without a far plane is the
-/// limit of a far one.
+/// Symmetric sides with the aspect ratio of the picture give the same lens as a half width, bit for bit. A far plane at infinity or
+/// beyond 256 world units is left out.
 #[test]
 fn square_pixels_and_far_planes() {
     let mut random = Random(22);

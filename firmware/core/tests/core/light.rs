@@ -298,7 +298,7 @@ fn the_highlight_is_near_the_power_of_the_cosine() {
         }
     }
     println!(
-        "from the fourth power {:.4}, from the power of the cosine {:.4}",
+        "error against the fourth power {:.4}, against the power of the cosine {:.4}",
         most[0], most[1]
     );
     assert!(most[0] <= 1.4 / 255.0 && most[1] <= 0.037, "{most:?}");

@@ -185,7 +185,10 @@ fn every_sample_comes_once_with_its_time() {
         assert_eq!((record.starts.len(), identity), (1, Identity::Mpu6050));
         assert!((130..140).contains(&(started / MILLISECOND)), "{started}");
         let missed = bus.with_chip(|chip| chip.missed);
-        assert!(missed <= 40, "{missed} are missed, before the first read");
+        assert!(
+            missed <= 40,
+            "{missed} samples are missed before the first read"
+        );
         let expected = (3 * SECOND - started) as f64 * 1e-6 * (1.0 + clock);
         let found = record.samples.len() as f64;
         assert!((found - expected).abs() <= 2.0, "{found} of {expected}");
@@ -305,11 +308,11 @@ fn recovers(begin: impl Fn(&mut Chip), within: u64) -> Record {
     let (at, time, _) = *after.clone().next().expect("samples again");
     let took = (at - to) / MILLISECOND;
     assert!(took <= within, "{took} ms");
-    assert!(at / 1_000 - time < 2_000, "a time of its own");
+    assert!(at / 1_000 - time < 2_000, "the time stamp is recent");
     let rate = after.count() as u64 * 1_000 / (2_000 - 1_300 - took);
     assert!(
         (980..1_020).contains(&rate),
-        "{rate} samples a second again"
+        "{rate} samples per second after the fault"
     );
     record
 }

@@ -97,7 +97,7 @@ fn gains_are_exact_for_steps_of_any_length() {
             let error = (f64::from(gain.of(step)) - exact).abs();
             assert!(
                 error <= 4.0 + exact * 2f64.powi(-16),
-                "{step}/{time_constant}: {error} of {exact}"
+                "step {step}, time constant {time_constant}: error {error} of {exact}"
             );
         }
     }
@@ -312,16 +312,16 @@ fn wrong_times_do_not_end_the_attitude() {
     let in_disorder = [START + 497_500, START + 498_000, START + 499_000];
     let cases: [(&str, &[u64], u64); 10] = [
         ("one ahead", &[u64::MAX >> 1], 1),
-        ("one in an hour", &[3_600_000_000], 1),
+        ("one in the next hour", &[3_600_000_000], 1),
         ("one at 0", &[0], 1),
         ("two ahead", &[90_000_000, 95_000_000], 2),
         ("two ahead, exchanged", &[95_000_000, 90_000_000], 2),
         ("three ahead", &[90_000_000, 99_000_000, 95_000_000], 3),
-        // The time between two wrong times of one clock counts.
+        // The step between two successive wrong times is integrated.
         ("two in order", &[90_000_000, 90_001_000], 1),
         ("three", &[90_000_000, 90_001_000, 95_000_000], 2),
         ("out of order", &in_disorder, 3),
-        ("at the largest time", &[u64::MAX], 1),
+        ("one at the largest time", &[u64::MAX], 1),
     ];
     for (name, wrong, stale) in cases {
         let mut tracker = tracker();
@@ -366,7 +366,7 @@ fn a_wrong_time_is_no_doubt_of_the_tilt() {
 fn a_shock_at_the_start_is_no_gravity() {
     let shocks: [(&str, [i16; 3], u64); 5] = [
         ("along x", [30_000, 0, 4_096], 100),
-        ("at an end of the range", [0, i16::MIN, 4_096], 100),
+        ("at the lower end of the range", [0, i16::MIN, 4_096], 100),
         ("just beyond 3 g", [0, 12_289, 0], 100),
         ("free fall", [0, 30, -20], 0),
         ("less than half a g", [2_000, 0, 0], 0),

@@ -73,7 +73,7 @@ fn closed_shapes_look_outwards() {
     }
 }
 
-/// The sides of the crate have their pictures upright, and smaller mip levels have about the brightness of larger ones.
+/// The pictures on the sides of the crate are upright, and smaller mip levels have about the brightness of larger ones.
 #[test]
 fn the_crate_has_a_texture() {
     let bytes = bytes(Shape::Crate);
@@ -87,7 +87,7 @@ fn the_crate_has_a_texture() {
         if vertex.normal[2] == 0 {
             assert_eq!(t, if z > 0 { 0 } else { 1 << 16 });
         }
-        // The sides that look along the x axis have the star, on the right half.
+        // The sides perpendicular to the x axis have the star, which is in the right half of the texture.
         let half = if vertex.normal[0] == 0 { 0 } else { 1 << 15 };
         assert!(s == half || s == half + (1 << 15), "{x} {s}");
     }
@@ -109,8 +109,8 @@ fn the_crate_has_a_texture() {
     }
 }
 
-/// The textures of the atrium are opaque, cut out, and blended. Blended faces come last, and texels of all levels of the cut-out are
-/// transparent and opaque.
+/// The atrium has opaque, cut-out and blended textures. Blended faces come last, and each level of the cut-out texture has transparent
+/// and opaque texels.
 #[test]
 fn the_atrium_has_textures() {
     let bytes = bytes(Shape::Atrium);

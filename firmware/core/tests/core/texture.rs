@@ -133,7 +133,7 @@ fn rubbish_is_refused_with_its_place() {
         let expected = format!("texture byte 0: expected {expected} bytes, found {end}");
         assert_eq!(text(&good[..end]), expected);
     }
-    // Bytes behind the texture do not belong to it.
+    // Bytes after the texture are not part of the texture.
     let longer = [&good[..], &[7; 5]].concat();
     assert_eq!(Texture::new_checked(&longer).unwrap().bytes(), good);
     let header = TextureHeader::from_bytes(good.first_chunk().unwrap());
@@ -153,7 +153,7 @@ fn sizes_that_no_texture_has_are_not_encoded() {
     }
     let levels = vec![Vec::new(); 2];
     assert!(encode(&Source { levels, ..good }).is_err());
-    // Missing texels are 0, larger values are cut.
+    // Missing texels are 0, and values of too many bits are truncated.
     let short = Source {
         levels: vec![vec![0x5E]],
         ..source(Format::Palette16, [3, 3], 1)
@@ -222,7 +222,7 @@ fn many_layers_stay_near_the_exact_colour() {
                 last = last.max((f64::from(found.channels()[1]) - f64::from(source)).abs());
             }
         }
-        println!("{eighths}/8: at most {largest} steps from exact, {last} at the end");
+        println!("share {eighths}/8: errors of at most {largest} steps, {last} steps at the end");
         assert!(largest <= 0.5 / share, "{eighths}: {largest}");
         // The last layers change nothing: a share of the difference is at most half a step.
         assert!(last <= 0.5 / share, "{eighths}: {last}");
