@@ -7,7 +7,7 @@ use core::time::Duration;
 
 use litex_pac::constants::CONFIG_CLOCK_FREQUENCY;
 
-/// Unit of frequencies in Hz: one cycle in 4 µs. Every frequency is a multiple.
+/// Unit of frequencies in Hz: one cycle in 4 µs. Every frequency is a multiple of this unit.
 const UNIT: u32 = 250_000;
 
 /// Lowest frequency in units of `UNIT`.

@@ -3,7 +3,7 @@
 //! After each whole frame the engine raises an interrupt and provides the [`Counts`] of this frame; a frame with a fault leaves
 //! the counts unchanged. Windows, region and run take effect with the next frame.
 //!
-//! Software moves the sensor's bus (SCCB): the driver implements [`Wires`].
+//! The sensor's bus (SCCB) is bit-banged: the driver implements [`Wires`].
 
 use glint_i2c::Wires;
 use litex_pac::gesture::{

@@ -90,8 +90,7 @@ pub struct Field<'a> {
     pub solid: Solid,
     /// Half the sides of the solid, or of the smallest cubes of a sponge in which rays march.
     pub half: [u32; 3],
-    /// The rule of the solid or, for marching rays, of the bounding box, and the planes by which rays leave the prisms around the eyes.
-    /// [`Raymarcher::set_field`] sets `enable`.
+    /// The register `exits`: the solid for rays by exits or, for marching rays, the bounding box. [`Raymarcher::set_field`] sets `enable`.
     pub exits: Exits,
     /// The prisms around the left and the right eye.
     pub prisms: [Prism; 2],

@@ -62,7 +62,7 @@ impl Clock {
     /// Clock cycles since reset.
     #[must_use]
     pub fn cycles(self) -> u64 {
-        // SAFETY: all that accesses the registers of the uptime latches the counter and then reads it.
+        // SAFETY: every access to the uptime registers first latches the counter and then reads it.
         let timer = unsafe { Timer0::steal() };
         timer.uptime_latch().write(true);
         timer.uptime_cycles().read()
@@ -136,8 +136,8 @@ pub fn block_on<T>(future: impl Future<Output = T>) -> T {
 }
 
 /// A delay ends at the first poll after its time; an interrupt of `timer0` causes this poll. `timer0` has a single
-/// interrupt: of several simultaneous delays only the last one started gets the interrupt. The other delays end at a poll with another
-/// cause.
+/// interrupt: of several simultaneous delays only the delay that started last gets the interrupt. The other delays end at a poll with
+/// another cause.
 impl embedded_hal_async::delay::DelayNs for Clock {
     async fn delay_ns(&mut self, ns: u32) {
         self.wait(self.frequency.cycles(Duration::from_nanos(ns.into())))

@@ -147,7 +147,7 @@ pub struct Set {
 /// A raster pass.
 #[derive(Clone, Copy, Debug)]
 pub struct Raster {
-    /// Size of the picture; with [`average`](Self::average) of the picture of the samples.
+    /// Size of the picture. With [`average`](Self::average), the size of the picture of the samples.
     pub size: Size,
     /// Four samples a pixel; only for gateware that [averages them](TriangleEngine::averages).
     pub average: Option<Average>,
@@ -189,7 +189,7 @@ pub struct Quarter {
     pub is_lower: bool,
 }
 
-/// The sky behind the triangles of a raster pass: heights, s8.23, and colours.
+/// The sky behind the triangles of a raster pass (docs/formats/triangle.md, "Sky"): heights above the horizon, s8.23, and colours.
 #[derive(Clone, Copy, Debug)]
 pub struct Sky {
     /// Height of the first eight pixels in the line above the picture.
@@ -204,8 +204,8 @@ pub struct Sky {
     pub horizon: [u8; 3],
     /// Colour at the nadir.
     pub nadir: [u8; 3],
-    /// Whether the sky is drawn before the triangles of each band, so that textures can be blended with it, instead of during the flush,
-    /// which takes no time.
+    /// Whether the sky is drawn before the triangles of each band, so that textures can be blended with the sky. Otherwise the sky is drawn
+    /// during the flush, which takes no additional time.
     pub is_first: bool,
 }
 
@@ -278,8 +278,8 @@ impl TriangleEngine {
         self.registers.caps().read().lines()
     }
 
-    /// Whether this gateware has geometry passes. If not, [`Error::Geometry`] ends each of them; a raster pass draws the [`Set`]s that the
-    /// program has written.
+    /// Whether this gateware has geometry passes. If not, [`Error::Geometry`] ends each geometry pass; a raster pass draws the [`Set`]s
+    /// that the program has written.
     #[must_use]
     pub fn has_geometry(&self) -> bool {
         self.registers.caps().read().geometry()
@@ -417,7 +417,7 @@ impl TriangleEngine {
     /// Starts a raster pass.
     ///
     /// # Safety
-    /// Until the pass has ended, lists, descriptors, the table of textures and the textures in it must not be written, and frame and depth
+    /// Until the pass has ended, lists, descriptors, the table of textures and its textures must not be written, and frame and depth
     /// codes must not be accessed. Frame and depth codes are overwritten.
     pub unsafe fn start_raster(&mut self, pass: &Raster) {
         let registers = &self.registers;

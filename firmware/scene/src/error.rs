@@ -50,7 +50,7 @@ pub enum ObjectError {
     None,
     /// No object has this number.
     Number {
-        /// The number.
+        /// The number that was given.
         number: u32,
         /// Number of objects.
         count: usize,
@@ -59,7 +59,7 @@ pub enum ObjectError {
     Matrix {
         /// The number of the object.
         number: u32,
-        /// The row, with its violated condition.
+        /// The error, which names the row and its violated condition.
         error: MatrixError,
     },
 }

@@ -102,7 +102,7 @@ impl Defaults {
         background: Background::Gradient,
     };
 
-    /// A board whose soft core draws: pictures that take less time.
+    /// A board whose soft core draws: smaller pictures with one sample, which take less time.
     pub const SOFT_CORE: Self = Self {
         backend: Backend::Cpu,
         size: Size::W320,
@@ -131,7 +131,7 @@ impl Sphere {
         phi: Turns::from_degrees(Q32_32::lit("65")),
     };
 
-    /// The camera that looks at the origin from here.
+    /// The camera that looks at the origin from this position.
     ///
     /// # Errors
     /// [`ViewError`] for a distance or an angle out of range.
@@ -147,11 +147,11 @@ pub struct PlacedMesh {
     pub mesh: Name,
     /// Placement and colour.
     pub place: Place,
-    /// The model matrix before the latest rotations, whose shape rotations keep.
+    /// The model matrix before the latest rotations. The rotations keep its shape.
     shape: Matrix,
     /// The model matrix before the turn of an animation.
     start: Matrix,
-    /// The angle by which the animation has turned the object since then.
+    /// The angle by which the animation has turned the object since `start`.
     turned: Turns,
 }
 
@@ -213,7 +213,7 @@ impl Eq for PlacedMesh {}
 pub enum Kind {
     /// The selected mesh, the field, or both.
     Solid,
-    /// The objects.
+    /// The list of objects.
     Objects,
     /// The wireframe, moved by this motion.
     Wireframe(Motion),
@@ -226,13 +226,13 @@ pub enum SceneSubject<'s> {
     Mesh(&'s str),
     /// The edges of the mesh with this name.
     Edges(&'s str, Edges),
-    /// A field.
+    /// A field without a mesh.
     Field(&'s Field),
     /// A mesh in a field.
     MeshInField(&'s str, &'s Field),
-    /// The objects.
+    /// The list of objects.
     Objects,
-    /// The wireframe.
+    /// The wireframe, moved by this motion.
     Wireframe(&'s Motion),
 }
 
@@ -253,9 +253,9 @@ impl fmt::Display for SceneSubject<'_> {
 pub struct Assets<'a> {
     /// The mesh that is shown alone or in a field; `None` if no such mesh is shown.
     pub mesh: Option<Mesh<'a>>,
-    /// The objects.
+    /// The shown objects.
     pub objects: &'a [Object<'a>],
-    /// The replacement texture.
+    /// The texture that replaces the textures of meshes; `None` if the meshes show their own textures.
     pub replacement_texture: Option<Texture<'a>>,
     /// The wireframe program.
     pub program: Program<'a>,
@@ -268,7 +268,7 @@ pub struct Scene {
     pub kind: Kind,
     /// Name of the mesh.
     pub mesh: Name,
-    /// The objects.
+    /// The list of objects, even if the scene shows another subject.
     pub objects: Vec<PlacedMesh, MAX_OBJECTS>,
     /// The distance field, alone or with the mesh in it; `None` shows the mesh alone.
     pub field: Option<Field>,
@@ -282,7 +282,7 @@ pub struct Scene {
     pub appearance: Appearance,
     /// The last set quality. The picture size may differ from the quality's size.
     pub quality: Quality,
-    /// The camera.
+    /// The current camera, also after motions.
     pub view: View,
     /// The last set camera on a sphere.
     pub sphere: Sphere,
@@ -292,7 +292,7 @@ pub struct Scene {
     pub fixed_samples: Option<Samples>,
     /// The drawing options of all meshes.
     pub options: MeshOptions,
-    /// Name of the replacement texture; `None` for their own textures.
+    /// Name of the replacement texture; `None` if the meshes show their own textures.
     pub texture: Option<Name>,
     /// Backend that draws the picture.
     pub backend: Backend,
@@ -649,7 +649,7 @@ impl Scene {
         OVERLAY.is_built && self.overlay
     }
 
-    /// The subject of the scene.
+    /// The subject that the scene shows.
     pub fn subject(&self) -> SceneSubject<'_> {
         if let Some(motion) = self.wireframe() {
             return SceneSubject::Wireframe(motion);
@@ -668,8 +668,8 @@ impl Scene {
         }
     }
 
-    /// The number of samples whose average is a pixel: the set one, or else the board's where it draws 60 frames per second. These are not
-    /// pictures by the soft core, for two eyes, and of fields in the largest size.
+    /// The number of samples whose average is a pixel: the set number, or else the board's default. Without a set number, pictures that the
+    /// board does not draw 60 times per second have one sample: pictures by the soft core, for two eyes, or of fields in the largest size.
     pub fn samples(&self) -> Samples {
         let is_slow = self.backend == Backend::Cpu
             || self.stereo.is_some()
@@ -687,7 +687,7 @@ impl Scene {
         }
     }
 
-    /// Whether a picture of the scene has depth codes: one with a single sample a pixel.
+    /// Whether a picture of the scene has depth codes: only a picture with one sample per pixel has.
     pub fn has_depths(&self) -> bool {
         self.samples() == Samples::One
     }

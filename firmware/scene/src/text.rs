@@ -79,7 +79,7 @@ impl Scene {
                 self.write_option(option, Some(from), out)?;
             }
         }
-        // Adding objects has shown them, so `scene` must show the mesh again. The field follows the mesh, and edges come last
+        // Adding objects has shown the objects, so `scene` must show the mesh again. The field follows the mesh, and edges come last
         // because they require a single mesh.
         let shows_mesh = self.kind == Kind::Solid && self.field.is_none();
         if self.mesh != from.mesh || shows_mesh && !self.objects.is_empty() {
@@ -156,7 +156,7 @@ impl Scene {
                 let from = from.filter(|from| from.sphere == self.sphere);
                 self.put(name, from, out, |scene| scene.view)
             }
-            // The command `view` covers these options, and `clip` the far plane of `projection`.
+            // The command `view` includes these options, and `clip` includes the far plane of `projection`.
             OptionName::Look
             | OptionName::LookAt
             | OptionName::Projection
@@ -201,7 +201,7 @@ impl Scene {
             OptionName::Animate => {
                 ANIMATE.when_built(|| self.put(name, from, out, |scene| scene.animation))
             }
-            // The option has no effect, and the scene does not hold it.
+            // The option has no effect, and the scene does not store its value.
             OptionName::Prepass => Ok(()),
         }
     }

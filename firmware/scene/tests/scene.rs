@@ -179,7 +179,7 @@ proptest! {
             let before = scene.clone();
             let is_overlay = line.starts_with("overlay");
             if let Some(Command::Set(setting)) = Command::parse(&line).expect("a command").filter(|_| is_overlay) {
-                scene.apply(&setting, &mut AnyBoard).expect("the text over the picture");
+                scene.apply(&setting, &mut AnyBoard).expect("the overlay is set");
             } else if execute(&mut scene, &line, &mut AnyBoard).is_err() {
                 prop_assert_eq!(&scene, &before);
             }
@@ -371,7 +371,7 @@ fn an_object_comes_back_from_many_moves_and_scales() {
     let pairs = rows[0].as_flattened().iter().zip(rows[1].as_flattened());
     let worst = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     println!(
-        "off by {:.1} units of 2^-24 after 400 scales",
+        "error of {:.1} units of 2^-24 after 400 scales",
         worst * 2f64.powi(24)
     );
     // Each step rounds by half a unit, and the factors are rounded to 2^−24 themselves.
@@ -405,8 +405,8 @@ fn other_lines_are_no_scene() {
     );
 }
 
-/// A pixel has four samples where the gateware draws about 60 frames per second, unless a number is set; a quality sets its number, and
-/// `aa default` the board's.
+/// A pixel has four samples where the gateware draws about 60 frames per second, unless a number is set. A quality sets its number,
+/// and `aa default` restores the number of the board.
 #[test]
 fn the_samples_follow_from_the_scene() {
     for (text, samples, has_depths) in [

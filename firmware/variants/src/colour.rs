@@ -7,7 +7,7 @@ use crate::kernel::{Kernel, other, shipped};
 
 /// A pixel format: a kernel that packs a colour 0xRRGGBB, and the inverse.
 pub struct Pixel {
-    /// The kernel.
+    /// The kernel that packs a colour.
     pub pack: Kernel<u32, u64>,
     /// Number of bits of a pixel.
     pub bits: u32,
@@ -15,7 +15,7 @@ pub struct Pixel {
     pub shown: fn(u64) -> [u8; 3],
 }
 
-/// All pixel formats, from cheap to exact.
+/// All pixel formats, from fast to exact.
 pub const PIXELS: &[Pixel] = &[
     truncated::<3, 3, 2>("colour_332", "RGB332, truncated"),
     truncated::<4, 4, 4>("colour_444", "RGB444, truncated"),

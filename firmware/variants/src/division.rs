@@ -7,7 +7,7 @@ use crate::kernel::Format::{Fixed, Float};
 use crate::kernel::{Kernel, other, shipped};
 use crate::reciprocal::reciprocal;
 
-/// All kernels, from cheap to exact; other libraries last.
+/// All kernels, from fast to exact; kernels of other libraries are last.
 pub const KERNELS: &[Kernel<[u32; 2], u64>] = &[
     other(
         "division_table",

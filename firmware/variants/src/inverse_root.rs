@@ -6,7 +6,7 @@ use micromath::F32Ext;
 use crate::kernel::Format::{Fixed, Float};
 use crate::kernel::{Kernel, float, other, shipped};
 
-/// All kernels, from cheap to exact; other libraries last.
+/// All kernels, from fast to exact; kernels of other libraries are last.
 pub const KERNELS: &[Kernel<u32, u64>] = &[
     other(
         "inverse_root_0",

@@ -1,4 +1,4 @@
-//! Kernels of one family: functions that compute the same value, from cheap to exact.
+//! Kernels of one family: functions that compute the same value, from fast to exact.
 
 /// A kernel: a function and its names in reports.
 pub struct Kernel<I, O> {
@@ -10,7 +10,7 @@ pub struct Kernel<I, O> {
     pub shipped: bool,
     /// Number format of inputs and outputs.
     pub format: Format,
-    /// The function.
+    /// The function that computes the value.
     pub run: fn(I) -> O,
 }
 

@@ -6,7 +6,7 @@ use micromath::F32Ext;
 use crate::kernel::Format::{Fixed, Float};
 use crate::kernel::{Kernel, other, shipped};
 
-/// All kernels, from cheap to exact; other libraries last.
+/// All kernels, from fast to exact; kernels of other libraries are last.
 pub const KERNELS: &[Kernel<[i32; 3], u64>] = &[
     other("length_sum", "max + 11/32·mid + 1/4·min", Fixed(0), |q| {
         let [a, b, c] = sorted(q.map(i32::unsigned_abs));

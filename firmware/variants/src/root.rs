@@ -8,7 +8,7 @@ use crate::inverse_root::inverse_root;
 use crate::kernel::Format::{Fixed, Float};
 use crate::kernel::{Kernel, float, other, shipped};
 
-/// All kernels, from cheap to exact; other libraries last.
+/// All kernels, from fast to exact; kernels of other libraries are last.
 pub const KERNELS: &[Kernel<u32, u64>] = &[
     other(
         "root_table",

@@ -7,7 +7,7 @@ use crate::inverse_root::inverse_root;
 use crate::kernel::Format::{Fixed, Float};
 use crate::kernel::{Kernel, other, shipped};
 
-/// All kernels, from cheap to exact; other libraries last.
+/// All kernels, from fast to exact; kernels of other libraries are last.
 pub const KERNELS: &[Kernel<[i32; 3], [i32; 3]>] = &[
     other(
         "unit_32",

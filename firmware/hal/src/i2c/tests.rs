@@ -172,7 +172,7 @@ impl Bus for Registers {
                 (master.error, master.transaction) = (Error::None, false);
             }
             0x0c => master.repeats = value,
-            0x1c => assert_eq!(value, 1, "the end of a transaction is an interrupt"),
+            0x1c => assert_eq!(value, 1, "the end of a transaction raises an interrupt"),
             _ => master.uptime.write(address),
         }
     }

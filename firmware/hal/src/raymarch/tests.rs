@@ -48,7 +48,7 @@ fn something_else_is_not_taken_for_the_raymarcher() {
     };
     assert_eq!(raymarcher.unwrap().capabilities(), capabilities);
     let silent = (registers().ev_enable().address(), 0);
-    assert_eq!(block.borrow().writes, [silent], "its interrupt is silent");
+    assert_eq!(block.borrow().writes, [silent], "the interrupt is disabled");
 }
 
 /// A field whose rays have this form.
@@ -227,6 +227,6 @@ fn tables_are_written_where_they_change() {
         (0..512).map(|entry| (entry, value(entry))).collect()
     };
     assert_eq!(written(1), whole(1));
-    assert_eq!(written(1), [], "they hold it already");
+    assert_eq!(written(1), [], "the tables already have this content");
     assert_eq!(written(2), whole(2));
 }
