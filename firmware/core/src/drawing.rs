@@ -1,4 +1,4 @@
-//! What a picture depends on besides meshes and fields: size, camera, colours, lights, objects and their motion.
+//! Parameters of a picture besides meshes and fields: size, camera, colours, lights, objects and their motion.
 
 pub mod animation;
 pub mod appearance;

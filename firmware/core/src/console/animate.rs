@@ -19,7 +19,7 @@ impl WordArgument for Rate {
     }
 }
 
-/// The word after `turn`: an axis, or the number of an object that an axis follows.
+/// The word after `turn`: an axis, or the number of an object, after which an axis follows.
 enum Turned {
     Axis(Axis),
     Object(u32),

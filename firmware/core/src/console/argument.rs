@@ -30,7 +30,7 @@ pub trait WordArgument {
     /// Parses a word. `None` means that the word is not accepted.
     fn parse(text: &str) -> Option<Self::Value<'_>>;
 
-    /// Returns the reason why [`parse`](Self::parse) rejects a word; `None` if the word is not of this type.
+    /// Returns the reason why [`parse`](Self::parse) rejects a word; `None` if the only reason is that the word is not of this type.
     fn error(_: &str) -> Option<ValueError<'_>> {
         None
     }

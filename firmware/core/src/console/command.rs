@@ -70,7 +70,7 @@ commands! {
         mesh Mesh(on: bool) or show in MESH_IN_FIELD: "turn the mesh in a field on or off, or show the setting";
         stereo Stereo(eyes: Or<Off, Stereo>) or show in STEREO: "show or set stereo: an eye E to each side of the camera, zero parallax at distance ZERO; off is one eye"
             => key(Order::Option, "0.05,3").with(LIT).without(&["orthographic"])
-                .host(option("stereo", stereo::FORM, "Stereo: one eye E to the left of the camera and one E to the right (0 to 1), with zero parallax at the distance ZERO; lengths in world units. The left eye is red, the right one blue or cyan [default tint: red-blue]")
+                .host(option("stereo", stereo::FORM, "Stereo: one eye E to the left of the camera and one E to the right (0 to 1), with zero parallax at the distance ZERO; lengths in world units. The left eye is red, the right eye blue or cyan [default tint: red-blue]")
                     .expects("two eyes"));
     }
 
@@ -86,7 +86,7 @@ commands! {
                 .host(option("material", "MATERIAL", "Material of a field; `normal` colours by the normal, `mixed` gives successive spheres different colours [default: normal]. Without a field, the colour of the material replaces the colours of meshes"));
         light Light(light: Or<Default, Light>) or show in LIGHT: "show the lights, add a light by its direction or at the camera, or restore the default lights"
             => key(Order::Option, "1,-2,3,fff0d8").list().with(LIT)
-                .host(option("light", light::FORM, "A light: the direction to it, or `camera` for a light at the camera, and its colour [default colour: white]. Up to four on a field [default: none on `normal`, sun and sky on other materials], one on meshes [default: camera]; if there are several, the first one lights the mesh in a field")
+                .host(option("light", light::FORM, "A light: the direction to it, or `camera` for a light at the camera, and its colour [default colour: white]. Up to four on a field [default: none on `normal`, sun and sky on other materials], one on meshes [default: camera]; if there are several, the first light also lights the mesh in a field")
                     .expects("a light"));
         ambient Ambient(colour: Or<Default, Rgb>) or show in LIGHT: "show or set the ambient light"
             => key(Order::Option, "404040").with(LIT)

@@ -186,7 +186,7 @@ macro_rules! commands {
         }
 
         impl Setting<'_> {
-            /// The option that is set.
+            /// The option that this setting changes.
             pub const fn name(&self) -> OptionName {
                 match self {
                     $($(Self::$value { .. } => OptionName::$value,)*)+

@@ -270,7 +270,7 @@ impl WordArgument for field::Field {
     }
 }
 
-/// The text form of the two eyes of a stereo picture.
+/// The text form of stereo settings.
 impl WordArgument for stereo::Stereo {
     type Value<'a> = Self;
     const KIND: WordKind = WordKind::Text(&stereo::FORM);
@@ -397,7 +397,7 @@ impl WordArgument for FieldOfView {
 }
 
 group! {
-    /// A horizontal field of view, and a vertical one, by default that of square pixels.
+    /// A horizontal and a vertical field of view; the default of the vertical field of view is that of square pixels.
     FieldsOfView: (Turns, Option<Turns>) = (x: FieldOfView, y: Option<FieldOfView>) => Ok::<_, ValueError>((x, y))
 }
 
@@ -476,7 +476,7 @@ pub enum GestureAction {
     On,
     /// Set up the image sensor for 640×480, and let the hand steer the camera.
     Vga,
-    /// Turn the image sensor off; the camera stays.
+    /// Turn the image sensor off; the camera keeps its position.
     Off,
     /// Find the ranges of the hand's colour (calibrate).
     Calibrate,
@@ -501,9 +501,9 @@ choices!(GestureAction {
 /// An action of the command `demo`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DemoAction {
-    /// Start with the first scene.
+    /// Start the demo with the first scene.
     On,
-    /// Stop; the shown scene stays.
+    /// Stop the demo; the current scene remains on the screen.
     Off,
     /// Show the next scene.
     Next,

@@ -28,8 +28,8 @@ impl Rate {
         self.0.to_bits() == 0
     }
 
-    /// The angle after `time` seconds: the product, rounded to nearest, modulo one turn. It is computed from the total time, so errors do
-    /// not add up: up to a year it differs by at most one unit of [`Turns`] from the exact angle.
+    /// The angle after `time` seconds: the product, rounded to nearest, modulo one turn. The angle is computed from the total time, so
+    /// errors do not add up: up to a year the angle differs by at most one unit of [`Turns`] from the exact angle.
     pub const fn angle(self, time: U32_32) -> Turns {
         // From degrees a second with 32 fraction bits to turns a second with 62 fraction bits: times
         // 2^30/360 = 2^27/45. The result is at most 2^62 in magnitude.
@@ -59,7 +59,7 @@ pub struct ObjectTurn {
     pub rate: Rate,
 }
 
-/// What moves in a picture.
+/// A moving part of a picture.
 #[derive(Clone, Copy)]
 pub(crate) enum Part {
     Azimuth,

@@ -212,7 +212,7 @@ impl View {
         Ok(Self { lens, ..self })
     }
 
-    /// Returns this camera with another half width, in world units, and square pixels; projection and middle of the picture stay.
+    /// Returns this camera with another half width, in world units, and square pixels. Projection and middle of the picture are unchanged.
     ///
     /// # Errors
     /// The half width is not from 0.0087 to 115.

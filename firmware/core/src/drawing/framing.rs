@@ -22,7 +22,7 @@ const AZIMUTH: Turns = Turns::from_degrees(Q32_32::lit("30"));
 /// Angle of the camera from the up axis, 60°.
 const POLAR: Turns = Turns::from_degrees(Q32_32::lit("60"));
 
-/// The axis that points up in mesh files with this extension, if it is not z, and the extension in lower case.
+/// The upward axis of mesh files with this extension, and the extension in lower case; `None` if the upward axis is z.
 pub fn upright(extension: &str) -> Option<(Axis, &'static str)> {
     let mut known = ["obj", "gltf", "glb"].into_iter();
     let known = known.find(|known| extension.eq_ignore_ascii_case(known))?;
@@ -89,7 +89,8 @@ impl BoundingSphere {
     }
 
     /// Returns a camera in whose picture the sphere fills 80 % of the height, with the axis `up` up on the screen. The direction
-    /// to the camera has an angle of 60° from this axis, and an azimuth of 30° plus `turned` about it.
+    /// to the camera has an angle of 60° from this axis, and an azimuth of 30° plus `turned` about this
+    /// axis.
     ///
     /// A given horizontal field of view determines the distance of the eye; otherwise the distance is 3.5 radii, which determines
     /// the field of view. The distance is clamped so that the eye is neither too far from the origin nor too close to the sphere.

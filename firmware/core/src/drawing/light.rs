@@ -527,7 +527,7 @@ impl Material {
 pub struct Gradient {
     /// Colours at zenith, horizon and nadir, or at the top, in the middle and at the bottom of the picture.
     pub colours: [Rgb; 3],
-    /// Whether the colours have fixed places in the picture, with any camera.
+    /// Whether the colours have fixed positions in the picture, independent of the camera.
     pub is_fixed: bool,
 }
 

@@ -108,9 +108,9 @@ impl Samples {
 /// A quarter of a picture: half of its width, and half of its height.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Quarter {
-    /// Whether it is on the right side.
+    /// Whether the quarter is on the right side.
     pub is_right: bool,
-    /// Whether it is at the bottom.
+    /// Whether the quarter is at the bottom.
     pub is_lower: bool,
 }
 
@@ -175,7 +175,7 @@ impl Window {
     }
 }
 
-/// The whole picture.
+/// Makes the window that is the whole picture of this size.
 impl From<Size> for Window {
     fn from(size: Size) -> Self {
         Self::whole(size)

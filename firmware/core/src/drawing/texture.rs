@@ -52,7 +52,7 @@ impl Format {
         }
     }
 
-    /// Number of colours of the palette; 0 for a format without one.
+    /// Number of colours of the palette; 0 for a format without a palette.
     pub const fn colours(self) -> usize {
         match self {
             Self::Rgb565 => 0,
@@ -87,7 +87,7 @@ impl Wrap {
     /// All rules, by their numbers in the header.
     pub const ALL: [Self; 3] = [Self::Repeat, Self::Mirror, Self::Clamp];
 
-    /// Maps a column or row, which may be outside of a level of 2^`side_log2` texels, to one inside.
+    /// Maps a column or row, which may be outside of a level of 2^`side_log2` texels, to a position inside.
     pub fn place(self, place: i32, side_log2: u32) -> u32 {
         let side = 1 << side_log2;
         let inside = place & (side - 1);

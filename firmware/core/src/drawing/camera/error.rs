@@ -30,9 +30,9 @@ impl fmt::Display for BasisVector {
 /// The left or the lower side of a window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// The left side, whose opposite is the right one.
+    /// The left side, opposite to the right side.
     Left,
-    /// The lower side, whose opposite is the upper one.
+    /// The lower side, opposite to the upper side.
     Bottom,
 }
 
@@ -82,7 +82,7 @@ pub enum ViewError {
         place: u8,
         /// Value of the entry.
         found: Q32_32,
-        /// The value that this entry has in a projection.
+        /// Description of the value that this entry has in a projection.
         expected: &'static str,
     },
     /// The near plane is out of range.

@@ -101,8 +101,8 @@ impl Level {
     }
 }
 
-/// The average of the four texels of a level that a texel of the next level covers, without the transparent ones, which have the
-/// value `key`; transparent if three of them are. In a level of one row or column, each of two texels counts twice.
+/// The average of the opaque texels among the four texels of a level that a texel of the next level covers. Transparent texels have the
+/// value `key`; the result is transparent if at least three texels are. In a level of one row or column, each of two texels counts twice.
 fn average(
     texels: &[[u8; 2]],
     (level, size): (Level, [u32; 2]),

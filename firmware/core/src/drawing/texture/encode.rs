@@ -22,7 +22,7 @@ pub struct Source {
     pub key: Option<u16>,
     /// How the texture is blended with the picture behind it.
     pub blend: Blend,
-    /// The colours of a palette. Missing colours are black, further ones are left out.
+    /// The colours of a palette. Missing colours are black; surplus colours are left out.
     pub palette: Vec<Rgb565>,
     /// The values of the texels of each mip level, row after row. Missing texels are 0.
     pub levels: Vec<Vec<u16>>,
