@@ -35,7 +35,7 @@ pub use union::Union;
 pub enum Field {
     /// A field of one kind.
     Primitive(Primitive),
-    /// A union of a field with faces, or a lattice, and of spheres.
+    /// The union of spheres and another solid: a lattice, or a field with faces.
     Union(Union),
 }
 

@@ -127,7 +127,7 @@ impl<'a> Item<'a> {
     }
 }
 
-/// The contents of a flash: models, scenes and lists of scenes.
+/// The contents of a flash: meshes, textures, scenes and lists of scenes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Contents<'a> {
     /// All bytes, beginning with the list of the items.

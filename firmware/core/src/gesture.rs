@@ -10,8 +10,8 @@
 //! | y of the centre | polar angle φ, half a turn over the height, limited to [`POLE`] from both poles |
 //! | width, the square root of the area | distance r: 5 for [`WIDTHS`]`[0]` of the frame or less, 2 for [`WIDTHS`]`[1]` or more |
 //!
-//! [`Control`] filters the target, holds the camera while the hand is lost, and moves smoothly to a hand that comes back. It also
-//! returns the [`EngineSetting`] for the next frame: the region around the hand, outside which no pixels are counted.
+//! [`Control`] filters the target, holds the camera while the hand is lost, and moves smoothly to a hand that returns. [`Control`]
+//! also returns the [`EngineSetting`] for the next frame: the region around the hand, outside which no pixels are counted.
 //! [`calibrate`] finds the windows of the hand's colour from a small picture.
 //!
 //! Noise pixels all over the frame pull the mean of all pixels to the frame's middle: 5 % of noise pixels shift it by up to 90 pixels for

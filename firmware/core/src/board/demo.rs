@@ -38,7 +38,7 @@ impl Demo {
         };
     }
 
-    /// Stops the demo. The shown scene stays.
+    /// Stops the demo. The current scene remains on the screen.
     pub const fn stop(&mut self) {
         self.count = 0;
         self.is_held = false;
@@ -64,7 +64,7 @@ impl Demo {
         self.is_held
     }
 
-    /// Starts or ends a hold of the shown scene. After a hold the scene stays for another [`TURN_MS`].
+    /// Starts or ends a hold of the shown scene. After a hold the scene is shown for another [`TURN_MS`].
     pub const fn hold(&mut self, now: u64, held: bool) {
         if self.is_held && !held {
             self.end = now.saturating_add(TURN_MS);

@@ -33,7 +33,7 @@ fn pass<T>(all: &mut T, tasks: &[fn(&mut T) -> Turn]) -> Turn {
 }
 
 /// Gives each of the tasks a turn, and sleeps if all tasks wait. `interrupts` returns the number of interrupts so far. `sleep`
-/// gets the number that was read before the first turn, and must return at once if the number has
+/// receives the number that was read before the first turn, and must return at once if the number has
 /// changed since.
 pub fn step<T>(
     all: &mut T,

@@ -75,7 +75,7 @@ impl Union {
             }
         }
         if let Some(list) = spheres.spheres(place.scale) {
-            // The sphere of a lattice takes a place in the list.
+            // The sphere of a lattice occupies an entry of the list.
             let most = MAX_SPHERES - usize::from(first.is_round());
             if list.count > most {
                 return Err(FieldError::Spheres(most));

@@ -125,8 +125,8 @@ pub struct Blob {
 }
 
 impl Blob {
-    /// Confidence that the blob is a single hand in a frame of `size` columns and rows, in units of 1/256. It grows with the
-    /// area, from the smallest area to four times this area, and with the part of the bounds that the pixels fill, from 1/8 to
+    /// Confidence that the blob is a single hand in a frame of `size` columns and rows, in units of 1/256. The confidence grows with
+    /// the area, from the smallest area to four times this area, and with the part of the bounds that the pixels fill, from 1/8 to
     /// 3/8.
     pub fn confidence(&self, size: [u16; 2]) -> u8 {
         let least = least_area(u32::from(size[0]) * u32::from(size[1]));

@@ -80,8 +80,8 @@ const MARGIN: u8 = 4;
 /// width and height.
 ///
 /// `samples` are Cr and Cb of a picture of `columns` times `rows` samples, line by line from the top left; the iterator is read
-/// twice. For each channel, the window is the range of the box's values without the lowest and highest tenth; it is widened on
-/// both sides by half of its span, but at least by 4. The values in the lowest and highest tenth are edges of the hand,
+/// twice. For each channel, the window is the range of the box's values without the lowest and highest tenth, widened on
+/// both sides by half of this range's span, but at least by 4. The values in the lowest and highest tenth are edges of the hand,
 /// highlights and noise.
 ///
 /// # Errors

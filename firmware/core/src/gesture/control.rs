@@ -40,7 +40,7 @@ pub const CHANNELS: [(Tuning, Q4_28); 3] = [
     (ANGLE, Q4_28::lit("0.000166")),
     (DISTANCE, Q4_28::lit("0.00390625")),
 ];
-/// Corner frequency in Hz of both low passes that fade the offset after a hand comes back; the time constant is 0.16 s.
+/// Corner frequency in Hz of both low passes that fade the offset after a hand returns; the time constant is 0.16 s.
 const RETURN: U16_16 = U16_16::lit("1");
 
 /// A position of the camera on a sphere about the origin, for [`View::spherical`].
@@ -67,13 +67,13 @@ impl Pose {
 /// Whether a hand steers the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Presence {
-    /// No hand: the whole frame is searched, and the camera stays.
+    /// No hand: the whole frame is searched, and the camera does not move.
     Absent,
-    /// A hand was seen in one or two frames; the camera stays.
+    /// A hand was seen in one or two frames; the camera does not move.
     Appearing,
     /// The hand steers the camera.
     Tracked,
-    /// The hand was lost recently, and its region is searched; the camera stays.
+    /// The hand was lost recently, and its region is searched; the camera does not move.
     Held,
 }
 
@@ -139,8 +139,8 @@ enum State {
     Appearing(Blob, u8),
     /// The hand of the last frame.
     Tracked(Last),
-    /// Number of the hand's pixels in the last frame that showed it, 0 if unknown, and the time in µs since the first frame
-    /// without it.
+    /// Number of the hand's pixels in the last frame that showed the hand, 0 if unknown, and the time in µs since the first
+    /// frame without the hand.
     Held(u32, u32),
 }
 
@@ -251,14 +251,14 @@ impl Control {
     }
 
     /// Takes the statistics of a new camera frame, and returns the hand that it shows. `time` is the time in µs at which the frame ended,
-    /// from any start; it must not decrease. After a pause of more than [`PATIENCE`] the search starts again.
+    /// from an arbitrary origin; it must not decrease. After a pause of more than [`PATIENCE`] the search starts again.
     ///
     /// A hand appears when three successive frames show a hand with sufficient confidence and nearly constant area and position.
-    /// The camera then moves to the hand's position within some tenths of a second, along the shorter arc. A hand that comes back
+    /// The camera then moves to the hand's position within some tenths of a second, along the shorter arc. A hand that returns
     /// to its region has the same effect.
     ///
     /// # Errors
-    /// The frame does not show the hand; the camera stays.
+    /// The frame does not show the hand; the camera does not move.
     #[inline]
     pub fn on_frame(&mut self, time: u64, statistics: &Statistics) -> Result<Blob, Doubt> {
         let before = self.ended.replace(time);

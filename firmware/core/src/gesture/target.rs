@@ -16,7 +16,7 @@ pub(super) const POLARS: [Q4_28; 2] = [POLE, Q4_28::from_bits((1 << 27) - POLE.t
 /// units. `size` is the number of columns and rows of the frame.
 ///
 /// The azimuth is 0 at the frame's middle, and its resolution is 2^−21 turns (0.0002°). The distance decreases linearly with the
-/// hand's width: a hand that comes nearer looks wider and brings the camera nearer, and noise of the width has the same effect at
+/// hand's width: a hand that approaches looks wider and moves the camera nearer, and noise of the width has the same effect at
 /// every distance.
 pub fn target(blob: &Blob, size: [u16; 2]) -> [Q4_28; 3] {
     let [x, y] = [0, 1].map(|axis| part(blob.centre[axis].to_bits(), size[axis]));

@@ -147,14 +147,14 @@ impl Matrix {
     }
 
     /// Returns the matrix that applies this matrix first and `next` second. The error of each number is at most half a unit
-    /// (2^−25): it is rounded once, to nearest.
+    /// (2^−25), because each number is rounded once, to nearest.
     ///
     /// # Errors
     /// The result is out of range or singular.
     #[inline(never)]
     pub fn then(&self, next: &Self) -> Result<Self, MatrixError> {
         // An entry is at most 2^28 and a component of the translation at most 2^29, so the sums are below 2^59. The result is at most
-        // 3·16·32 + 32, which exceeds the range of Q8.24; it saturates far outside the range of a matrix.
+        // 3·16·32 + 32, which exceeds the range of Q8.24; a saturated result is far outside the range of a matrix.
         let product = |row: [Q8_24; 3], column: [Q8_24; 3], addend: Q8_24| {
             let sum: i64 = core::iter::zip(row, column)
                 .map(|(a, b)| i64::from(a.to_bits()) * i64::from(b.to_bits()))
@@ -287,7 +287,7 @@ impl Matrix {
 const LEAD: u32 = 44;
 
 /// Largest accepted error of a squared length and of a scalar product of rows of a rotation, in units of
-/// 2^−48. It allows errors of 4 units in the entries.
+/// 2^−48. This limit allows errors of 4 units in the entries.
 const ROTATION_SLACK: i64 = 1 << 27;
 /// Largest accepted change of a shape by rounding errors, in units of 2^−24, for a column of a length below 1.
 const SHAPE_SLACK: i64 = 4;
@@ -348,7 +348,7 @@ pub struct Normals {
 }
 
 impl Normals {
-    /// Transforms a normal (s2.14) and scales it to length 1, s2.14; the zero vector stays.
+    /// Transforms a normal (s2.14) and scales it to length 1, s2.14; the zero vector stays unchanged.
     ///
     /// The error of each component is at most 0.51 units (2^−14).
     // Not inlined, because most meshes have no matrix for their normals.

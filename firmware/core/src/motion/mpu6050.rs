@@ -75,7 +75,7 @@ pub enum Identity {
     Mpu9255,
     /// An ICM-20689, which is sold as MPU-6050.
     Icm20689,
-    /// Another chip, which keeps the configuration of an MPU-6050 and is used as one. The value is the
+    /// Another chip, which keeps the configuration of an MPU-6050 and is used as an MPU-6050. The value is the
     /// contents of its register WHO_AM_I.
     Other(u8),
 }
@@ -310,8 +310,8 @@ impl<B: I2c> Mpu6050<B> {
 
 /// The bytes of one periodic read: INT_STATUS, the sample, then EXT_SENS_DATA_00, which is 0.
 ///
-/// The master, not the chip, acknowledges received bytes, so it does not detect a chip that vanishes during a read: the released
-/// bus reads as ones. EXT_SENS_DATA_00 verifies that the chip responded until the end of the sample.
+/// The master, not the chip, acknowledges received bytes, so the master does not detect a chip that vanishes during a read:
+/// the released bus reads as ones. EXT_SENS_DATA_00 verifies that the chip responded until the end of the sample.
 type Burst = [u8; 1 + Measurement::BYTES + 1];
 
 /// Value that the master reads if no device sends.

@@ -1,4 +1,4 @@
-//! Numbers of the shapes, in Q2.14.
+//! Arithmetic of the shapes, in Q2.14.
 
 use crate::fixed::{Q2_14, Q2_30, Turns};
 use crate::trig::sin_cos_q30;

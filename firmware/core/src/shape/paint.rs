@@ -28,7 +28,7 @@ pub const GLASS: Picture = Picture {
     ..picture(SMALL, pane)
 };
 
-/// The positions of the leaves' ends to the right of the middle, in texels, and their heights.
+/// For each leaf: the position of its end to the right of the middle, and its height, in texels.
 const ENDS: [[i32; 2]; 8] = [
     [-26, 40],
     [-19, 52],

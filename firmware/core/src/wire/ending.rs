@@ -43,7 +43,7 @@ impl Ending {
         }
     }
 
-    /// Starts the end of a transfer that the other side has interrupted, which needs no wait.
+    /// Starts the end of a transfer that the other side has interrupted. This end needs no wait.
     pub fn interrupted(now_ms: u64) -> Self {
         let timing = Timing {
             silence_ms: 0,

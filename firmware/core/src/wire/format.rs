@@ -52,7 +52,7 @@ impl Manifest {
         }
     }
 
-    /// Number of blocks of the transfer; the last one may be short.
+    /// Number of blocks of the transfer; the last block may be short.
     pub const fn blocks(self) -> u32 {
         self.length.div_ceil(BLOCK)
     }

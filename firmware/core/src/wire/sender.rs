@@ -16,7 +16,7 @@ const STALL_FACTOR: u64 = 4;
 pub type Sender<'a> = Endpoint<Sending<&'a [u8]>>;
 
 impl<D: AsRef<[u8]>> Endpoint<Sending<D>> {
-    /// Starts to send `data`. The number `session` (modulo 16) separates this transfer from remains of the previous one, so the
+    /// Starts to send `data`. The number `session` (modulo 16) separates this transfer from remains of the previous transfer, so the
     /// caller increments it for each transfer.
     pub fn new(data: D, session: u8, timing: Timing, now_ms: u64) -> Self {
         let manifest = Manifest::of(data.as_ref());

@@ -8,7 +8,7 @@ pub struct Timing {
     /// Time in milliseconds without a valid frame after which a transfer fails.
     pub silence_ms: u64,
     /// After a transfer, received bytes are dropped until the line was quiet for this time in milliseconds. With 0 no bytes are
-    /// dropped: the caller gets them.
+    /// dropped: the caller receives the bytes.
     pub quiet_ms: u64,
 }
 
@@ -33,7 +33,7 @@ pub enum State {
     Running,
     /// Complete and verified; the other side has confirmed the end or is silent.
     Done,
-    /// Failed.
+    /// Failed for this cause.
     Failed(Failure),
 }
 

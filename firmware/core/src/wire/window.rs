@@ -17,7 +17,7 @@ pub struct SendWindow {
     arrived: u128,
     /// Bit i is set if block `next` + i was sent and is not known to be lost.
     sent: u128,
-    /// For each block, the number of the last data frame that carried it. The index is the block's number modulo `WINDOW`.
+    /// For each block, the number of the last data frame that carried the block. The index is the block's number modulo `WINDOW`.
     carriers: [u8; WINDOW as usize],
     /// Number of the last data frame sent.
     number: u8,

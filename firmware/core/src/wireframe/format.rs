@@ -29,7 +29,7 @@ pub enum Opcode {
     Eye = 0b000,
     /// The view plane: z.
     Plane = 0b001,
-    /// The window: x and y of the lower left corner, then of the upper right one.
+    /// The window: x and y of the lower left corner, then of the upper right corner.
     Window = 0b010,
     /// A segment: x, y, z of both ends.
     Segment = 0b100,

@@ -20,7 +20,7 @@ pub enum Instruction {
 }
 
 impl Instruction {
-    /// Decodes a word: the opcode in bits 98 to 96, and six fields of 16 bits, the first one in bits 95 to 80.
+    /// Decodes a word: the opcode in bits 98 to 96, and six fields of 16 bits, the first field in bits 95 to 80.
     ///
     /// Only the opcode distinguishes an end from other instructions, so a segment with all fields ones is an ordinary segment.
     ///

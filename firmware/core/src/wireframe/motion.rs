@@ -44,9 +44,9 @@ pub enum Step {
 /// of a row of R's matrix to it, exactly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Motion {
-    /// w, x, y, z: s2.62.
+    /// The quaternion w, x, y, z, s2.62.
     rotation: [i64; 4],
-    /// s6.34, within ±16.
+    /// The displacement d in the body's axes, s6.34, within ±16.
     displacement: [i64; 3],
 }
 
@@ -132,9 +132,9 @@ impl Motion {
 /// The constants of a frame that move the points of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pose {
-    /// Columns of the rotation's matrix: s2.30.
+    /// Columns of the rotation's matrix, s2.30.
     axes: [[i32; 3]; 3],
-    /// s6.20, within ±16.
+    /// The displacement d, s6.20, within ±16.
     displacement: [i32; 3],
 }
 

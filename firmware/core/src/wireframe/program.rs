@@ -1,4 +1,4 @@
-//! Checked programs.
+//! Programs in binary form, and the checks of programs.
 
 use super::error::{Expected, Found, Location, ProgramError, Violation};
 use super::format::{MAX_SEGMENTS, Opcode, Point, Segment, WORD_BYTES, Window};
@@ -123,7 +123,7 @@ pub struct Program<'a> {
 }
 
 impl<'a> Program<'a> {
-    /// Checks every word of a program up to its end. What follows the end is ignored, as in the original design.
+    /// Checks every word of a program up to its end. Data after the end is ignored, as in the original design.
     ///
     /// # Errors
     /// The first deviation from the format, with the number of its word.

@@ -1,8 +1,8 @@
 //! The projection of moved segments to the screen.
 //!
 //! A point P is projected from the eye E to the view plane z = a: x' = Ex − (Ez − a)·(Ex − x)/(Ez − z), and y' by the same
-//! formula. The window then fills the picture. Combined, projection and scaling need one quotient for each axis of the screen,
-//! with 8 fraction bits:
+//! formula. The window then fills the picture. Projection and scaling together need one quotient for each axis of the
+//! screen, with 8 fraction bits:
 //!
 //! ```text
 //! right = 256·W·((Ex − xl)·(Ez − z) − (Ez − a)·(Ex − x)) / ((xh − xl)·(Ez − z))
@@ -54,7 +54,7 @@ struct Axis {
 }
 
 impl Projection {
-    /// Makes the projection from a program's viewing parameters to a picture, or to a part of one.
+    /// Makes the projection from a program's viewing parameters to a picture, or to a part of a picture.
     pub fn new(viewing: &Viewing, window: impl Into<Window>) -> Self {
         let window = window.into();
         let bits = |x: Q5_11| i64::from(x.to_bits());
@@ -171,10 +171,11 @@ fn end(a: [Fraction; 2], b: [Fraction; 2]) -> Option<[i32; 2]> {
     enter(a, b)
 }
 
-/// Returns the point at which the segment from an end `a` outside of the guard band enters it; `None` if the whole segment is outside.
+/// Returns the point at which the segment from an end `a` outside of the guard band enters the guard band; `None` if the whole segment
+/// is outside.
 ///
 /// For each side of the guard band between `a` and `b`, the position of the crossing on the other axis is exact. The crossing
-/// that lies within the guard band becomes the end; it is rounded last.
+/// that lies within the guard band becomes the end, and is then rounded.
 #[inline(never)]
 fn enter([ax, ay]: [Fraction; 2], [bx, by]: [Fraction; 2]) -> Option<[i32; 2]> {
     for (axis, (from, to), other) in [(0, (ax, bx), (ay, by)), (1, (ay, by), (ax, bx))] {

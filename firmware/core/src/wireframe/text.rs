@@ -60,7 +60,7 @@ impl fmt::Display for Instruction {
     }
 }
 
-/// Translates a whole program from its text form to its binary form. What follows the end is ignored, as in the original design.
+/// Translates a whole program from its text form to its binary form. Text after the end is ignored, as in the original design.
 ///
 /// # Errors
 /// The first deviation from the format, with the number of its line.

@@ -6,7 +6,7 @@ fn rounded(rgb: [u8; 3], rounding: Rounding, place: [u32; 2]) -> Rgb565 {
     Rgb565::rounded(Rgb565::with_fractions(rgb), rounding, place)
 }
 
-/// The mean over a dither pattern is near the given channel and never decreases as the channel grows; it is exact for 0 and 255.
+/// The mean over a dither pattern is near the given channel and never decreases as the channel grows; the mean is exact for 0 and 255.
 #[test]
 fn dithering_keeps_the_mean() {
     let mut worst = 0.0_f64;

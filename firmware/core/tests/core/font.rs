@@ -44,7 +44,7 @@ fn a_line_shows_its_characters() {
             assert_eq!(texel, is_on.then_some(Rgb565::WHITE), "{character:?}");
         }
     }
-    // Characters beyond the largest place are left out.
+    // Characters beyond the largest coordinate are left out.
     assert_eq!(font.line(&text, [i16::MAX - 6, 0], 1, colour).count(), 1);
     assert_eq!(font.line("ab", [i16::MIN; 2], 0, colour).count(), 2);
 }

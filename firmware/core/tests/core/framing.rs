@@ -14,7 +14,7 @@ fn mesh(points: &[[i16; 3]]) -> Vec<u8> {
         position,
         ..Vertex::default()
     });
-    // The encoder leaves out vertices without a triangle, so each vertex gets one.
+    // The encoder leaves out vertices without a triangle, so each vertex gets a triangle.
     let triangles = (0..points.len() as u32).map(|i| IndexedTriangle {
         indices: [i; 3],
         ..IndexedTriangle::default()

@@ -161,7 +161,7 @@ fn two_fields_of_view() {
         lens.scales([320, 180]),
         [(160, lens.half_width()), (90, lens.half_height())]
     );
-    // Enlarging keeps the shape; a half width and a single angle restore square pixels.
+    // A zoom keeps the aspect ratio; a half width or a single angle restores square pixels.
     let zoomed = wide.zoomed(U8_28::from_num(2)).expect("in range");
     let halves = |view: &View| [view.lens().half_width(), view.lens().half_height()];
     assert_eq!(

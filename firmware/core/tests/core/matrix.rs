@@ -234,7 +234,7 @@ fn many_small_turns_keep_the_shape() {
     assert!(turned.abs() < 36_000.0 * 1.8e-6, "{turned}");
 }
 
-/// After a single rotation, `with_shape_of` leaves the product as it is.
+/// After a single rotation, `with_shape_of` leaves the product unchanged.
 #[test]
 fn one_turn_is_the_product() {
     for size in [0.002, 0.01, 0.3, 1.0, 5.0, 15.9] {

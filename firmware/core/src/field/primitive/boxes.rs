@@ -21,8 +21,8 @@ pub struct Cubes {
 
 /// A lattice of boxes, whose centres are at all multiples of the period along each axis.
 ///
-/// Boxes with half the period as half side along an axis touch along this axis, so the solid is unbounded there: with two such axes it
-/// consists of parallel plates, with one of pillars.
+/// Boxes with half the period as half side along an axis touch along this axis, so the solid is unbounded there: with two such axes the
+/// solid consists of parallel plates, and with one such axis of pillars.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Boxes {
     /// Distance between the centres of neighbouring boxes along each axis, in world units.

@@ -131,7 +131,7 @@ impl FlatSolid for FixedBox {
         };
         let p = Folded::of(point.map(wrap)).map(|x| x.negated_if(x.value < 0));
         // The distance along an axis on which the box is unbounded: less than every distance to a face, so the maximum ignores
-        // it; fits 23 bits.
+        // this number. The number fits 23 bits.
         let nowhere = -1 << (10 + FRACTION);
         let outside =
             [0, 1, 2].map(|i: usize| self.half[i].map_or(nowhere, |half| p[i].value - half));

@@ -37,7 +37,7 @@ pub trait Sink<E> {
 /// Reads a chip endlessly.
 ///
 /// Each sample is read once. After an error the stream searches for the chip every 30 ms. A chip that is still configured continues at
-/// once. Any other chip is reset and configured; so is a chip that sent no samples, or only equal ones.
+/// once. Any other chip is reset and configured; so is a chip that sent no samples, or only equal samples.
 pub struct Stream<B, D, S> {
     chip: Mpu6050<B>,
     delay: D,

@@ -30,7 +30,7 @@ use crate::fixed::wide;
 /// Longest step, in µs, for which the rate is interpolated by a cubic; for longer steps it is interpolated linearly.
 pub const LONGEST_CURVE: u32 = 1 << 15;
 /// Largest ratio of a step to the previous step for which the rate is interpolated by a cubic; beyond this ratio old samples
-/// would outweigh new ones.
+/// would outweigh new samples.
 pub const MOST_STRETCH: u32 = 3;
 /// The largest rate, in 1/256 LSB: 1.5 times the largest count, so that a bias may be subtracted. This limit ensures that all
 /// 32-bit numbers in this file are in range.
@@ -99,7 +99,7 @@ impl Weights {
             return Self::STRAIGHT;
         }
         let g = Divisor::new(h1).ratio(step);
-        // D of the cubic (see the head of this file) needs S of the previous step. Without two earlier steps D is unknown, and
+        // D of the cubic (see the module's documentation) needs S of the previous step. Without two earlier steps D is unknown, and
         // its weights are 0.
         let (mut near, mut far) = (0, 0);
         if steps == 2 && order >= 4 {
@@ -152,8 +152,8 @@ impl Divisor {
     /// the quotient is at most 3.
     const fn ratio(&self, a: u32) -> i32 {
         let number = (a << 15) + self.number / 2;
-        // `below` is the quotient or 1 less: the product with the reciprocal is too small by less than 1 before it
-        // is rounded down.
+        // `below` is the quotient or 1 less: the product with the reciprocal is too small by less than 1 before the
+        // product is rounded down.
         let below = ((number as u64 * self.inverse as u64) >> 32) as u32;
         let rest = number - below * self.number;
         (below + (rest >= self.number) as u32) as i32

@@ -107,7 +107,7 @@ fn near(a: i64, b: i64, most: u32) -> bool {
 }
 
 /// Moves `mean` towards `count` by the part `gain` (32 fraction bits) of their difference, rounded to nearest. The mean has 32
-/// fraction bits and its bits are below 2^48 in magnitude, so no product overflows.
+/// fraction bits and is below 2^48 units of 2^−32 in magnitude, so no product overflows.
 #[inline(never)]
 fn approach(mean: &mut i64, count: i16, gain: u32) {
     let difference = fraction(count) - *mean;

@@ -3,7 +3,7 @@
 /// One measurement of the sensor in raw counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sample {
-    /// Time in µs, from any start.
+    /// Time in µs, from an arbitrary origin.
     pub t_us: u64,
     /// Specific force along each axis, in counts.
     pub accel: [i16; 3],

@@ -137,8 +137,8 @@ impl Tilt {
         if self.gain.time_constant() < self.time_constant {
             self.grow(step);
         }
-        // `factor` converts the error, in units of 2^−14 LSB, to a half angle with 57 fraction bits: it is half the gain, divided
-        // by g. `self.inverse` is at most 2^22.
+        // `factor` converts the error, in units of 2^−14 LSB, to a half angle with 57 fraction bits. The factor is half the
+        // gain, divided by g. `self.inverse` is at most 2^22.
         let factor = ((u64::from(self.gain.of(step)) * u64::from(self.inverse)) >> 22) as u32;
         let up = attitude.up();
         // This shift lets the error below use only the upper 32 bits of the products.

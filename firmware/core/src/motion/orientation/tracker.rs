@@ -102,7 +102,7 @@ impl Tracker {
         self.resting = None;
     }
 
-    /// Starts to track the bias of the gyroscope at rest by `resting`.
+    /// Makes the tracker correct the gyroscope's bias by `resting` while the sensor is at rest.
     pub fn follow_bias(&mut self, resting: RestBias) {
         self.set_bias(resting.bias());
         self.resting = Some(resting);

@@ -220,7 +220,7 @@ fn tab_completes_names() {
     assert!(fields.starts_with("off menger: box: "), "{fields}");
 }
 
-/// A line that is printed above the prompt keeps a line that is being typed, but does not repeat one that has ended.
+/// A line that is printed above the prompt keeps a line that is being typed, but does not repeat a line that has ended.
 #[test]
 fn a_redrawn_line_is_the_one_being_typed() {
     let mut editor = LineEditor::new();
