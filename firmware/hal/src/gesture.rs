@@ -24,7 +24,7 @@ pub struct Signal {
     pub is_running: bool,
     /// Fault of the last frame.
     pub fault: Option<Fault>,
-    /// Pixels of the last line, and lines of the last frame.
+    /// Number of pixels of the last line, and number of lines of the last frame.
     pub seen: [u16; 2],
 }
 

@@ -88,7 +88,7 @@ pub struct Field<'a> {
     pub control: Control,
     /// The solid.
     pub solid: Solid,
-    /// Half the sides of the solid, or of the smallest cubes of a sponge in which rays march.
+    /// Half the sides of the solid; for marching rays in a sponge, half the side of its smallest cubes.
     pub half: [u32; 3],
     /// The register `exits`: the solid for rays by exits or, for marching rays, the bounding box. [`Raymarcher::set_field`] sets `enable`.
     pub exits: Exits,

@@ -183,9 +183,9 @@ pub struct Average {
 /// A quarter of a frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Quarter {
-    /// Whether it is on the right side.
+    /// Whether the quarter is on the right side.
     pub is_right: bool,
-    /// Whether it is at the bottom.
+    /// Whether the quarter is at the bottom.
     pub is_lower: bool,
 }
 
@@ -227,7 +227,7 @@ pub struct Input {
     pub textures: Option<u32>,
 }
 
-/// Counts of the last geometry pass, and of the earlier passes whose output it continued.
+/// Counts of the last geometry pass, and of the earlier passes to whose output the last pass was appended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Number of triangles of the mesh of the last pass.
@@ -265,8 +265,8 @@ impl TriangleEngine {
         self.registers.ev_enable().write(events);
     }
 
-    /// Whether this gateware draws triangles. If not, [`Error::Triangles`] ends each geometry pass of a mesh. If it draws no lines either,
-    /// this error ends each raster pass with a [`Set`], too; a raster pass without sets draws a raymarcher's field.
+    /// Whether this gateware draws triangles. If not, [`Error::Triangles`] ends each geometry pass of a mesh. If this gateware draws no
+    /// lines either, this error ends each raster pass with a [`Set`], too; a raster pass without sets draws a raymarcher's field.
     #[must_use]
     pub fn draws_triangles(&self) -> bool {
         self.registers.caps().read().triangles()

@@ -94,7 +94,7 @@ pub struct Defaults {
 }
 
 impl Defaults {
-    /// A board with all options of the gateware.
+    /// The options of a board with all parts of the gateware.
     pub const GATEWARE: Self = Self {
         backend: Backend::Gateware,
         size: Size::W1280,
@@ -102,7 +102,7 @@ impl Defaults {
         background: Background::Gradient,
     };
 
-    /// A board whose soft core draws: smaller pictures with one sample, which take less time.
+    /// The options of a board whose soft core draws: smaller pictures with one sample per pixel, which take less time.
     pub const SOFT_CORE: Self = Self {
         backend: Backend::Cpu,
         size: Size::W320,
@@ -186,7 +186,7 @@ impl PlacedMesh {
     /// Applies `next` to the placement. Rotations keep the shape of the object, even many small ones.
     ///
     /// # Errors
-    /// The matrix would be out of range or singular; the placement stays.
+    /// The matrix would be out of range or singular; the placement is then unchanged.
     pub fn change(&mut self, next: &Place) -> Result<(), MatrixError> {
         self.place = self.place.then(next)?;
         if next.matrix.is_rotation() {
@@ -280,11 +280,11 @@ pub struct Scene {
     pub stereo: Option<Stereo>,
     /// The appearance of a field, with lights and background of meshes.
     pub appearance: Appearance,
-    /// The last set quality. The picture size may differ from the quality's size.
+    /// The quality that was set last. The picture size may differ from the quality's size.
     pub quality: Quality,
     /// The current camera, also after motions.
     pub view: View,
-    /// The last set camera on a sphere.
+    /// The camera on a sphere that was set last.
     pub sphere: Sphere,
     /// Size of the picture.
     pub size: Size,

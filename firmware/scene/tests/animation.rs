@@ -34,7 +34,7 @@ fn still(mut scene: Scene) -> Scene {
     scene
 }
 
-/// After ten hours, in many frames or in one step, the scene is the one with the final angle set.
+/// After ten hours, in many frames or in one step, the scene equals the scene in which the final angle was set.
 #[test]
 fn a_scene_is_exact_after_ten_hours() {
     let cases = [

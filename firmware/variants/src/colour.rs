@@ -40,7 +40,7 @@ pub const fn input(phase: u32) -> u32 {
     phase >> 8
 }
 
-/// The pixel format that keeps these numbers of the highest bits of red, green and blue.
+/// The pixel format that keeps the highest `R` bits of red, `G` bits of green and `B` bits of blue.
 const fn truncated<const R: u32, const G: u32, const B: u32>(
     name: &'static str,
     config: &'static str,

@@ -3,7 +3,7 @@
 use glint_core::fixed::{Q4_28, U16_16};
 use glint_core::gesture::{TimeStep, low_pass_gain, towards};
 
-/// The mean of the last `N` inputs, a power of two.
+/// The mean of the last `N` inputs; `N` is a power of two.
 #[derive(Clone, Copy, Debug)]
 pub struct Average<const N: usize> {
     inputs: [i32; N],
