@@ -148,7 +148,7 @@ impl GestureEngine {
         }
     }
 
-    /// Counters since reset.
+    /// The counters of the engine, which count since reset.
     #[must_use]
     pub fn counters(&self) -> Counters {
         Counters::read(&self.registers)

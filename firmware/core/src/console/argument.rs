@@ -256,7 +256,7 @@ impl Keyword for Own {
     const WORD: &'static str = OWN;
 }
 
-/// The word that stands for the own textures of meshes.
+/// The keyword that selects the textures of the meshes themselves.
 pub const OWN: &str = "own";
 
 /// An argument that is either the keyword `K`, whose value is `None`, or a word of type `T`.

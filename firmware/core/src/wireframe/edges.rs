@@ -3,7 +3,7 @@
 /// Removes duplicates of undirected edges: sorts the edges in place, each with its smaller index first, and returns the slice of
 /// the unique edges in increasing order. Edges from an index to itself are removed.
 ///
-/// The edges of a mesh are three for each triangle, or one for each corner of a polygon. An edge inside a closed mesh then occurs
+/// The list of a mesh has three edges for each triangle, or one edge for each corner of a polygon. An edge inside a closed mesh then occurs
 /// twice, in both directions, and an edge on the border of an open mesh once. The function needs no memory besides the slice.
 pub fn unique_edges<T: Copy + Ord>(edges: &mut [[T; 2]]) -> &mut [[T; 2]] {
     for edge in &mut *edges {

@@ -135,7 +135,7 @@ proptest! {
         }
     }
 
-    /// No program, motion and segment exceeds the range of the arithmetic: overflow would panic here.
+    /// No combination of program, motion and segment exceeds the range of the arithmetic: an overflow would panic here.
     #[test]
     fn all_inputs_project(
         viewing in any_viewing(),
