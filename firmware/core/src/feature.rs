@@ -99,7 +99,7 @@ features! {
     BENCH = "bench";
 }
 
-/// Features of every build.
+/// The part that every build contains.
 pub const BASE: Feature = Feature {
     name: "",
     is_built: true,

@@ -45,7 +45,7 @@ pub struct TwoWires<W, D> {
 }
 
 impl<W: Wires, D: DelayNs> TwoWires<W, D> {
-    /// Makes a bus; `delay` times its clock.
+    /// Makes a bus; `delay` determines the timing of its clock.
     pub const fn new(wires: W, delay: D) -> Self {
         Self { wires, delay }
     }
