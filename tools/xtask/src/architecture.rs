@@ -5,7 +5,7 @@ use std::fs;
 
 use crate::paths::root;
 
-/// Text of a cell if the block has no such file: a block that computes nothing has no model.
+/// Text of a cell whose kind of file the block does not have: a block that computes nothing has no model.
 const ABSENT: &str = "–";
 
 /// Cells of a table row, without backquotes.
@@ -16,7 +16,7 @@ fn cells(row: &str) -> Vec<String> {
         .collect()
 }
 
-/// Rows of the table of blocks, from its header.
+/// Rows of the table of blocks, the header first.
 fn table() -> Vec<Vec<String>> {
     let page = fs::read_to_string(root().join("docs/architecture.md")).unwrap();
     page.lines()

@@ -20,7 +20,7 @@ pub fn demo(arguments: &[String]) -> Result<()> {
     }
     let mut first = arguments.clone();
     first.push("--first".to_owned());
-    // The first picture needs only the host program, so it is there long before the SoC.
+    // The first picture needs only the host program, so it is drawn before the SoC is built, which takes minutes.
     run::program("glint", "glint", "demo", &first)?;
     bootstrap::bootstrap()?;
     gateware::build(Board::Virtual)?;

@@ -12,7 +12,7 @@ use page::Page;
 
 /// The pages in a folder, as paths from the root.
 fn pages_in(folder: &str) -> Vec<(PathBuf, Page)> {
-    let files = fs::read_dir(root().join(folder)).expect("the folder is there");
+    let files = fs::read_dir(root().join(folder)).expect("the folder exists");
     let paths = files.map(|file| Path::new(folder).join(file.expect("readable").file_name()));
     let mut paths: Vec<_> = paths
         .filter(|path| path.extension().is_some_and(|extension| extension == "md"))

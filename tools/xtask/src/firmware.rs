@@ -96,8 +96,8 @@ pub fn build_for(board: Board, scenes: &[SceneFile], features: &[&str]) -> Resul
     compile(board, &names, false, &parts, None)
 }
 
-/// Builds the firmware with `features`, and the default features if `has_default`. `suffixes` are appended to the image's name;
-/// the section `for_speed` of the Cargo profile is optimised for speed.
+/// Builds the firmware with `features`, and with the default features if `has_default`. `suffixes` are appended to the image's name. The
+/// packages in the section `for_speed` of the Cargo profile are optimised for speed.
 fn compile(
     board: Board,
     suffixes: &[&str],
@@ -206,7 +206,7 @@ mod tests {
 
     use crate::paths;
 
-    /// Lists origin and length of each memory window in a file of `firmware/windows`, as the documents write them.
+    /// Lists origin and length of each memory window in a file of `firmware/windows`, in the notation of the documents.
     fn windows(memory_x: &str) -> Vec<(String, String)> {
         let windows = memory_x.lines().filter_map(|line| {
             let (_, rest) = line.split_once(": ORIGIN = 0x")?;

@@ -1,7 +1,8 @@
-//! `cargo xtask interface`: lists the public interface of the library of programs, `glint-program`, on a host.
+//! `cargo xtask interface`: lists the public interface of `glint-program`, the library for programs.
 //!
-//! A line of the list is an item as Rust, without bodies and private fields, after the module from which programs import it. The list is
-//! read from the sources, so it names types as these do. Modules for the soft core alone are not part of the interface.
+//! A line of the list has the module from which programs import an item, and the item in Rust syntax, without bodies and private fields.
+//! The list is read from the sources, so it names types as the sources do. Modules and items for the soft core alone, and tests, are not
+//! part of the interface.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -27,8 +28,8 @@ const ATTRIBUTES: [&str; 3] = ["derive", "non_exhaustive", "repr"];
 /// Writes the list. With `check`, compares it with the committed list instead.
 ///
 /// # Errors
-/// A source cannot be read, an item has no example in its documentation, or (with `check`) the interface is not that of the list; the
-/// error has a line for each of these items.
+/// A source cannot be read, an item has no example in its documentation, or (with `check`) the interface differs from the list; the error
+/// lists the items without an example, or the differences.
 pub fn write(check: bool) -> Result<()> {
     let folder = paths::root().join(SOURCES);
     let interface = Interface::load(&|path| {
@@ -58,7 +59,8 @@ pub fn write(check: bool) -> Result<()> {
     Ok(())
 }
 
-/// The lines that are only in `before`, after `-`, and those that are only in `after`, after `+`, in the order of their texts.
+/// The lines that are only in `before`, prefixed with `-`, and the lines that are only in `after`, prefixed with `+`, in the order of their
+/// texts.
 fn changes(before: &str, after: &str) -> Vec<String> {
     let [before, after] = [before, after].map(|text| text.lines().collect::<BTreeSet<_>>());
     let changed = before.symmetric_difference(&after);
@@ -75,7 +77,7 @@ type ReadSource<'a> = &'a dyn Fn(&Path) -> Result<String>;
 struct Interface {
     /// The items, sorted.
     lines: Vec<String>,
-    /// Those of the items that need an example in their documentation and have none.
+    /// The items that need an example in their documentation and have none.
     without_example: Vec<String>,
 }
 
@@ -141,7 +143,7 @@ impl Interface {
         }
     }
 
-    /// Adds a line for each public item of an `impl` block, or one for that of a trait.
+    /// Adds a line for each public item of an inherent `impl` block, or a single line for the `impl` of a trait.
     fn add_block(&mut self, place: &str, mut block: ItemImpl) {
         block.attrs.clear();
         let items = mem::take(&mut block.items);
@@ -169,7 +171,7 @@ impl Interface {
         }
     }
 
-    /// Adds the line of a type, a function or a constant, or those of a trait and its functions.
+    /// Adds the line of a type, a function or a constant, or the lines of a trait and its items.
     fn add_definition(&mut self, place: &str, mut item: Item, documentation: &str) {
         match &mut item {
             Item::Fn(function) => *function.block = empty(),
@@ -201,7 +203,7 @@ impl Interface {
         self.push(place, item, Some(documentation));
     }
 
-    /// Adds a line. `documentation` is that of an item that needs an example.
+    /// Adds a line. `documentation` is the documentation of the item; `None` if the item needs no example.
     fn push(&mut self, place: &str, item: Item, documentation: Option<&str>) {
         let line = format!("{place}: {}", one_line(item));
         if documentation.is_some_and(|text| !text.contains("```")) {
@@ -215,13 +217,13 @@ impl Interface {
 #[derive(Default)]
 struct Module {
     path: String,
-    /// The module that exports items of this one, if this one is private, and the names of these items.
+    /// If this module is private: the module that re-exports items of this module, and the names of these items.
     exports: Option<(String, BTreeSet<String>)>,
     items: Vec<Item>,
 }
 
 impl Module {
-    /// Reads the module in `file`, whose child modules are in `folder`, and adds it and them to `modules`.
+    /// Reads the module in `file`, whose child modules are in `folder`, and adds all of these modules to `modules`.
     fn load(
         mut self,
         file: &Path,
@@ -255,10 +257,10 @@ impl Module {
         modules.push(self);
         Ok(())
     }
-    /// The names that this module exports from its child module `name`.
+    /// The names that this module re-exports from its child module `name`.
     ///
     /// # Errors
-    /// An export is not the name of an item.
+    /// A re-export is not the name of an item.
     fn exports_of(&self, name: &str) -> Result<BTreeSet<String>> {
         let mut names = BTreeSet::new();
         for item in &self.items {
@@ -290,7 +292,7 @@ impl Module {
         }
     }
 
-    /// The names of the public items of this module, with their places.
+    /// The names of the public items of this module, each with the module from which programs import it.
     fn places(&self) -> impl Iterator<Item = (String, String)> {
         self.items.iter().filter_map(|item| {
             let (name, _) = public(&mut item.clone())?;
@@ -376,7 +378,7 @@ fn reduce(attributes: &mut Vec<Attribute>) -> String {
     documentation
 }
 
-/// Replaces each private field by `_`, and several private fields with names by one.
+/// Replaces each private field by `_`, and keeps only one of several private fields with names.
 fn reduce_fields(fields: &mut Fields) {
     for field in fields.iter_mut() {
         field.attrs.clear();
@@ -404,7 +406,7 @@ fn empty() -> Block {
     parse_quote!({})
 }
 
-/// The rules of a macro without the text that they insert.
+/// The patterns of a macro's rules, without the expansions.
 fn without_bodies(rules: TokenStream) -> TokenStream {
     let mut follows_arrow = false;
     let reduced = rules.into_iter().map(|token| match token {
@@ -420,7 +422,7 @@ fn without_bodies(rules: TokenStream) -> TokenStream {
     reduced.collect()
 }
 
-/// An item as Rust in a line, with `;` in place of empty bodies, and `..` in place of private fields.
+/// An item in Rust syntax on one line, with `;` in place of empty bodies, and `..` in place of private fields.
 fn one_line(item: Item) -> String {
     let has_bodies = matches!(item, Item::Fn(_) | Item::Impl(_));
     let text = prettyplease::unparse(&File {

@@ -79,8 +79,8 @@ enum Task {
         /// Build exactly what these scenes need: names of built-in scenes, scene files, or `all` [default: every part]
         #[arg(long, value_name = "NAME|FILE.toml|all", value_delimiter = ',')]
         scene: Vec<String>,
-        /// Further Cargo features of the firmware, as in its Cargo.toml; `peers` lets the console command `bench` measure other crates too, `uptime`
-        /// and `uncached` are for variants of the CPU
+        /// Further Cargo features of the firmware, from its Cargo.toml; `peers` adds kernels of other crates to the console command
+        /// `bench`, `uptime` and `uncached` are for variants of the CPU
         #[arg(long, value_delimiter = ',')]
         features: Vec<String>,
     },
@@ -108,15 +108,15 @@ enum Task {
     Modules,
     /// Measure the FPGA resources of the gateware; fail if a block exceeds its limit in gateware/budget.toml
     Resources(resources::Options),
-    /// Build the virtual board for each scene and with each single block; fail if a board does not answer, or draws its scene
-    /// differently or in more cycles than the complete build
+    /// Build the virtual board for each scene and with each single block; fail if a board does not answer, or if its picture differs from
+    /// the complete build's or takes more cycles
     Walk {
         /// Builds to test: names of scenes, and `only-BLOCK` [default: all]
         builds: Vec<String>,
     },
     /// Measure errors and run times of the algorithms, and write the pages in docs/report
     Report {
-        /// Page to measure: `sine`, `triangle`, `gouraud`, `raymarch`, `imu`, `geometry`, `gesture`, `kernels`, `quality`,
+        /// Page to measure: `sine`, `triangle`, `gouraud`, `raymarch`, `imu`, `geometry`, `gesture`, `kernels`, `quality`, `antialiasing`,
         /// `textures`, `timeline`, `cpu`, `long`, `stiff`; or `pages`: rebuild all pages from their tables [default: all pages, as a
         /// workflow of independent jobs]
         page: Option<String>,

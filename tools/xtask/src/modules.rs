@@ -213,7 +213,7 @@ impl Crate {
         if scope.defined.contains(name) {
             return Some((module.to_vec(), name.to_owned()));
         }
-        // A macro is visible in later modules or exported, and its name is nearly always unique: the first definition is taken.
+        // Textual scope is not modelled: the name of a macro is nearly always unique, so the first definition is taken.
         if name.ends_with('!') {
             let mut modules = self.modules.iter();
             let (definer, _) = modules.find(|(_, module)| module.defined.contains(name))?;

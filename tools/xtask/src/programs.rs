@@ -16,7 +16,7 @@ use crate::{paths, run};
 /// Builds every program of `firmware/examples`.
 ///
 /// # Errors
-/// A program does not compile, or is no program for the virtual board.
+/// A program does not compile, or is not a program for the virtual board.
 pub fn build() -> Result<()> {
     let built = paths::target().join("firmware-build");
     let mut cargo = Command::new("cargo");

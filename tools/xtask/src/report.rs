@@ -43,10 +43,10 @@ pub fn page(name: &str, arguments: &[String]) -> Result<()> {
     run::program("glint-reference", "report", name, arguments)
 }
 
-/// Builds the gateware that the page `name` needs beside the virtual board. `raymarch`: a SoC with four lanes for lattices, and the
-/// raymarcher without a SoC. `gouraud`: the rasterizer. `quality` and `timeline`: the SoC with smooth shading.
-/// `antialiasing`: that, and the SoC with textures and fog. `textures`: the SoC with textures. `cpu`: the SoC with each variant of the CPU,
-/// and the firmware of each.
+/// Builds the gateware that the page `name` needs in addition to the virtual board. `raymarch`: a SoC with four lanes for lattices, and the
+/// raymarcher without a SoC. `gouraud`: the rasterizer. `quality` and `timeline`: the SoC with smooth shading. `antialiasing`: the SoC with
+/// smooth shading, and the SoC with textures and fog. `textures`: the SoC with textures. `cpu`: the SoC with each variant of the CPU, and
+/// the firmware of each.
 fn build_parts(name: &str) -> Result<()> {
     match name {
         "raymarch" => {
