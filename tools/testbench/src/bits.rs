@@ -42,7 +42,7 @@ impl Bits {
         &self.0
     }
 
-    /// The value as 32-bit words, lowest first, for changes.
+    /// Mutable 32-bit words of the value, lowest first.
     pub(crate) fn words_mut(&mut self) -> &mut [u32; WORDS] {
         &mut self.0
     }

@@ -24,7 +24,7 @@ pub struct Module {
     instance: Instance,
     /// The port `clk`; `None` for a module whose clocks the test bench drives.
     clock: Option<Port>,
-    /// Whether the outputs are those of the current inputs after the last clock, with the clock low.
+    /// Whether the module has been evaluated for the current inputs with the clock low.
     settled: bool,
     cycles: u64,
 }
@@ -197,7 +197,7 @@ impl Module {
     }
 
     /// Advances by one clock: the rising edge samples the current inputs, and the outputs are updated. The clock falls at the next
-    /// [`settle`](Self::settle) or clock, because each evaluation takes the time of all logic between inputs and outputs.
+    /// [`settle`](Self::settle) or clock, because each evaluation computes all combinational logic, which takes time.
     pub fn clock(&mut self) {
         self.settle();
         self.eval_with_clock(1);

@@ -7,7 +7,7 @@ use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use virtual_flash::{Flash, MAX_BYTES, Pins};
 
-/// Number of clocks to read a word: eight half bytes of two clocks each, and one clock each for the
+/// Number of clocks to read a word: eight nibbles of two clocks each, and one clock each for the
 /// request and the end.
 const WORD: u64 = 2 * 8 + 2;
 /// Number of clocks of a command before its first word: eight idle clocks, 32 bits and eight dummy

@@ -24,9 +24,9 @@ pub struct Bench {
     /// Whether `band_valid` was high in the previous clock: then no group may be taken.
     pub closed: bool,
     answer: [Port; 2],
-    /// The lanes that pass the depth test of each group that asked and has a pixel, and those that the module answered.
+    /// Expected masks of the lanes that pass the depth test, one for each non-empty query ([`Kind::Asks`]).
     pub asked: Vec<u8>,
-    /// Number of lanes that pass the depth test, of groups that write them or ask.
+    /// Number of lanes that pass the depth test, over all plain groups and queries.
     pub passed: u64,
     pub answered: Vec<u8>,
     pub drawn: Pixels,

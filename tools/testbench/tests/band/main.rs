@@ -128,7 +128,7 @@ fn random_bands_with_a_sky_and_stalls() {
     }
 }
 
-/// Groups that ask, and blended pixels, in a random order with other groups. Blended pixels are not counted.
+/// Queries and groups of blended pixels, in a random order with plain groups. The counters do not count blended groups.
 #[test]
 fn random_blended_pixels_with_stalls() {
     for (seed, stalls) in [(31, 0.0), (32, 0.3), (33, 0.8)] {
@@ -156,7 +156,7 @@ fn random_blended_pixels_with_stalls() {
     }
 }
 
-/// The colour behind a pixel is the stored one, or the clear colour of a pixel not yet written.
+/// The colour behind a pixel is the stored colour, or the clear colour if the pixel has not been written.
 #[test]
 fn colours_behind_blended_pixels() {
     let mut random = Pcg64Mcg::new(34);

@@ -10,14 +10,14 @@ pub const ROWS_OF_A_BANK: u64 = 2048;
 pub const WORDS: usize = 16;
 pub const PICTURE_LINES: usize = 720;
 
-/// What a group does.
+/// Operation of a group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Writes the lanes that pass the depth test.
     Plain,
-    /// Only asks for the lanes that pass the depth test.
+    /// A query: returns the lanes that pass the depth test, and writes nothing.
     Asks,
-    /// Writes the colours of all lanes of the mask; they keep their depths.
+    /// Writes the colours of all lanes of the mask, and keeps their depths.
     Blended,
 }
 
@@ -52,13 +52,13 @@ pub struct Band {
 }
 
 impl Band {
-    /// The colour of the sky in a row, which differs from row to row, and the lowest bits of the number of its line.
+    /// The colour of the sky in a row of the band buffer, different in each row, and the two lowest bits of the row's picture line.
     pub fn sky_of(&self, row: usize) -> ([u8; 3], u32) {
         let colour = [29, 83, 151].map(|step| (step * row + usize::from(self.clear)) as u8);
         (colour, (row / self.stride % 4) as u32)
     }
 
-    /// The colour of a pixel without a group: the clear colour, or that of the sky.
+    /// The colour of a pixel that no group has drawn: the clear colour, or the sky's colour.
     fn background(&self, row: usize, lane: usize) -> u16 {
         let (colour, line) = self.sky_of(row);
         match self.sky {

@@ -17,7 +17,7 @@ pub fn scaled([red, green, blue]: [u8; 3]) -> u32 {
     u32::from_le_bytes(colour)
 }
 
-/// Pictures of random cameras, each of which is interrupted once; one of them looks along an edge of the number format.
+/// Pictures of random cameras with the smallest, the largest and two typical half widths. Each picture is drawn in part, and then whole.
 #[test]
 fn colours_of_random_pictures() {
     let mut random = Random(3);

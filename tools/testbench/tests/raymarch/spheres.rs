@@ -69,7 +69,7 @@ impl Window {
         }
     }
 
-    /// A cone as seen from the window's first pixel: its numbers are linear, so those of each pixel are the same.
+    /// A cone relative to the window's first pixel: its functions are linear, so their values at each pixel do not change.
     fn shifted(&self, cone: &Cone) -> Cone {
         let [column, row] = self.first;
         let moved = |linear: Linear, shift: u32| {

@@ -12,7 +12,7 @@ use glint_testbench::{Memory, Module, Port, Record, Stalls};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-/// Words that wait for their client at a port of memory.
+/// Number of words that the port of memory holds for the loader.
 const ROOM: usize = 32;
 /// Largest base-2 logarithm of a side, and largest level number, that the gateware supports.
 const LIMIT: u64 = 10;
@@ -29,7 +29,7 @@ struct Loaded {
 
 struct Bench {
     module: Module,
-    /// Addresses beyond its end wrap around.
+    /// Contents of the memory; addresses beyond the end wrap around.
     memory: Memory,
     words: u32,
     /// Word address of the table of textures.
@@ -42,7 +42,7 @@ struct Bench {
     palette: [Port; 3],
     stalls: [Stalls; 2],
     latency: u64,
-    /// Words on the way, each with the clock of its arrival.
+    /// Addresses of the requested words, each with the clock from which the word is available.
     queue: VecDeque<(u64, u32)>,
     /// Whether the first of `queue` is on the port, where it stays until it is taken.
     is_shown: bool,
@@ -99,7 +99,7 @@ impl Bench {
         self.module.settle();
     }
 
-    /// Takes what moves in this clock.
+    /// Executes the transfers of this clock.
     fn clock(&mut self) {
         let moves =
             |[valid, ready, _]: [Port; 3]| self.module.is_high(valid) && self.module.is_high(ready);
@@ -123,7 +123,7 @@ impl Bench {
         let begin = self.module.cycles();
         loop {
             let clocks = self.module.cycles() - begin;
-            assert!(clocks < 20_000, "texture {number} does not end");
+            assert!(clocks < 20_000, "the loading of texture {number} does not end");
             self.module.set(self.start, u64::from(clocks == 0));
             self.settle();
             let value = |port| self.module.value(port);
@@ -140,7 +140,7 @@ impl Bench {
             let is_done = self.module.is_high(self.done);
             self.clock();
             if is_done {
-                assert!(self.queue.is_empty(), "words that nobody takes");
+                assert!(self.queue.is_empty(), "requested words that the loader did not take");
                 return Loaded {
                     sampler: self.module.read_record("sampler"),
                     levels,

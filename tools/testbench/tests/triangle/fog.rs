@@ -5,13 +5,13 @@ use glint_model::Fog;
 use glint_testbench::{Bits, Pipe, drive_fog};
 use glint_vectors::Random;
 
-/// A group: what passes besides, the line, the mask, the codes, the colours, and whether it is added to the picture.
+/// The input of the module for a group. `beside` passes through unchanged; `is_added` is set if the colours are added to the picture.
 struct Group {
     beside: u64,
     line: u64,
     mask: u64,
     codes: [u32; 8],
-    /// With fraction bits.
+        /// RGB565 channels with fraction bits, 8 bits each.
     colours: [[u8; 3]; 8],
     is_added: bool,
 }
@@ -59,7 +59,7 @@ impl Bench {
         }
     }
 
-    /// Sends groups in fog, or, with `None`, without fog, and checks what leaves. Returns the number of clocks.
+    /// Sends groups in `fog`, or without fog if it is `None`, and checks the outputs. Returns the number of clocks.
     fn check(&mut self, fog: Option<&Fog>, groups: &[Group]) -> u64 {
         let first_line = self.random.integer(0, 3) as u32;
         let module = &mut self.pipe.module;

@@ -66,14 +66,14 @@ pub struct Bench {
     module: Module,
     ports: Ports,
     quads: VecDeque<Quad>,
-    /// Whether the last clock had a quad of two items.
+    /// Whether the last clock had the first item of a quad of two items.
     follows: bool,
     stalls: [Stalls; 4],
     latency: u64,
     seed: u32,
-    /// Words that are asked for: the earliest clock, and the address.
+    /// Requested words: the earliest clock of delivery, and the address.
     asked: VecDeque<(u64, u32)>,
-    /// Whether the first of `asked` is shown, where it stays until it is taken.
+    /// Whether the first of `asked` is on the port, where it stays until it is taken.
     shown: bool,
     /// Number of words that the sampler took.
     pub words: u64,
@@ -242,7 +242,7 @@ impl Bench {
             assert!(self.clock(memory).is_none(), "a step after the last quad");
         }
         assert!(self.module.is_high(self.ports.idle));
-        assert!(self.asked.is_empty(), "words that nobody takes");
+        assert!(self.asked.is_empty(), "requested words that the sampler did not take");
     }
 
     fn clock(&mut self, memory: &Memory) -> Option<Step> {

@@ -30,7 +30,7 @@ const LIMIT: u32 = 64;
 /// Number of values in a line of the file.
 const PER_LINE: usize = 8;
 
-/// Writes a line that starts with `word` for every few of the values.
+/// Writes the values in lines of up to [`PER_LINE`] values, each line with `word` at the start.
 fn lines(text: &mut String, word: &str, values: &[String]) {
     for values in values.chunks(PER_LINE) {
         writeln!(text, "{word} {}", values.join(" ")).unwrap();

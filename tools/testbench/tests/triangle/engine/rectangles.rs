@@ -45,7 +45,7 @@ fn draw_over(expected: &mut Expected, rectangles: &[Numbered]) -> Vec<(Descripto
     placed.collect()
 }
 
-/// Random rectangles of a picture 320 pixels wide, some of which show their texels by one pixel each.
+/// Random rectangles in a picture 320 pixels wide: some of them unscaled, with one texel per pixel.
 fn some_rectangles<'a>(random: &mut Pcg64Mcg, textures: &'a [Vec<u8>]) -> Vec<Numbered<'a>> {
     let count = random.random_range(1..12);
     let rectangles = (0..count).map(|_| {
@@ -131,7 +131,7 @@ fn rectangles_in_front_of_a_field() {
     bench.finish("rectangles in front of a field", &shown.expected);
 }
 
-/// The clocks that text and pictures add to a clear frame of 1280x720.
+/// Bounds the clocks that text and pictures add to an empty frame of 1280x720.
 #[test]
 fn rectangles_are_drawn_fast() {
     let mut memory = vec![0; Font::BYTES];
@@ -176,7 +176,7 @@ fn rectangles_are_drawn_fast() {
     let mut bench = Bench::of("texture", 9, 0.0);
     bench.with_depth = false;
     let textures = [&[font.texture().bytes().to_vec()][..], &pictures].concat();
-    // The clocks for each rectangle.
+    // Draws rectangles, and returns the mean number of clocks for each of them.
     let mut cost = |name: &str, number: usize, rectangles: Vec<Rectangle>| {
         let rectangles: Vec<_> = rectangles.into_iter().map(|each| (each, number)).collect();
         let [clear, all] = [&[], &rectangles[..]].map(|shown| {

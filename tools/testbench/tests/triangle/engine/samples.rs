@@ -19,7 +19,7 @@ use super::expected::gradient;
 use super::fields::send_bands;
 use super::textured::{Shown, texture};
 
-/// A camera before the square of the meshes, from so near that the square covers the middle of the picture.
+/// A camera so close to the square of the test meshes that the square covers the middle of the picture.
 fn view(random: &mut Pcg64Mcg) -> View {
     let eye = [
         random.random_range(-0.5..0.5),
@@ -29,8 +29,8 @@ fn view(random: &mut Pcg64Mcg) -> View {
     Camera::looking(eye, [0.1, 0.5, 0.0], 0.8, 0.02).rounded()
 }
 
-/// Frames of meshes with textures, before a sky, in a field, and in fog, in all sizes. A quarter leaves the other quarters of the frame
-/// buffer as they are.
+/// Frames of meshes with textures: before a sky, in a field, and in fog, in all sizes. Drawing a quarter must not change the other quarters
+/// of the frame buffer.
 #[test]
 fn frames_are_averaged() {
     let mut drawn = [0; 3];

@@ -78,11 +78,11 @@ pub struct Shown {
     pub whole: Vec<(Descriptor, Bounds)>,
     /// The clipped triangles.
     pub clipped: Vec<(Descriptor, Bounds)>,
-    /// The pixels of each band of the field around it.
+    /// The pixels of the field around the mesh, by band.
     pub bands: Vec<Vec<Pixel>>,
 }
 
-/// The view of a camera at `eye`, which looks along the square.
+/// The view of a camera at `eye` that looks at the square of the test meshes.
 fn looking(eye: [f64; 3]) -> View {
     Camera::looking(eye, [0.1, 0.5, 0.0], 0.8, 0.02).rounded()
 }
@@ -143,7 +143,7 @@ impl Shown {
         Self::of(&bytes, &frame, vec![])
     }
 
-    /// A frame of a mesh, whose `bytes` these are. With four samples a pixel, `before` is the content of the frame buffer.
+    /// A frame of the mesh with these `bytes`. With four samples a pixel, `before` is the content of the frame buffer.
     pub fn of(bytes: &[u8], frame: &Frame, mut before: Vec<u16>) -> Self {
         let mesh = Mesh::new_checked(bytes).unwrap();
         let window = frame.window();
@@ -227,7 +227,7 @@ fn frames_with_textures() {
                 .map(|_| encode(&texture(&mut random)).unwrap())
                 .collect();
             let mesh = if layers {
-                // Without a gap all depths are equal, apart from rounding.
+                // With a gap of 0, all layers have equal depths, apart from rounding.
                 let gap = [0.0, 0.1, 0.4][random.random_range(0..3)];
                 textured_layers(&textures, repeats, gap)
             } else {
@@ -300,7 +300,8 @@ fn frames_with_textures_in_a_field() {
     }
 }
 
-/// A sky behind meshes, with and without fog, some of which are blended with it: then it is drawn before them. Frames without a sky follow.
+/// Frames of meshes with a sky behind them, with and without fog. If a mesh is blended with the sky, the sky is drawn first. Frames without
+/// a sky follow.
 #[test]
 fn frames_with_textures_before_a_sky() {
     let mut firsts = [0; 2];
@@ -363,8 +364,8 @@ fn sphere(filter: Filter, format: Format) -> Vec<u8> {
     wrapped(&Mesh::new_checked(&bytes).unwrap(), texture.unwrap())
 }
 
-/// Checks the pixels drawn per clock of the raster pass on a sphere with a texture, by the latency of memory in clocks. The last case is in
-/// fog, whose latency each band has once.
+/// Checks the pixels drawn per clock of the raster pass on a sphere with a texture, for several memory latencies. The last case is in fog,
+/// which adds its latency once in each band.
 #[test]
 fn a_sphere_with_a_texture_is_drawn_fast() {
     for (filter, format, latency, fog, least) in [
@@ -427,7 +428,7 @@ fn a_blended_group_takes_8_clocks_and_one_for_each_pixel() {
         let mesh = textured_layers(&[texture.unwrap()], 1.0, 0.0);
         let shown = Shown::new(mesh, [0.0, -1.2, 1.0]);
         let mut bench = Bench::of("texture", 3, 0.0);
-        // The next band waits for depths.
+        // Without depths, because a band waits until the depths of the previous band are written.
         bench.with_depth = false;
         let name = format!("{blend:?}");
         let [_, clocks] = bench.draw_textured(&name, &shown.expected, &shown.mesh, &shown.clipped);
