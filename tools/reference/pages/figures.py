@@ -95,7 +95,7 @@ def antialiasing(errors):
 
 
 def before(errors):
-    """RMS of the scenes of the errors before antialiasing and dithering, and of those after it."""
+    """RMS of the errors of all scenes: before antialiasing and dithering were added, and with both."""
     return root_mean_square(errors[["before", "dithered", "nearest"]])
 
 
@@ -148,8 +148,8 @@ def kernels(all_kernels, family):
 def cores(cells, frames):
     """The variants of the soft core with their firmware: cells, and the soft core's part of each scene's frame in cycles and, at the
     variant's own clock rate, in ms, also relative to the default variant. The family "Pareto front" has those that no other beats in both
-    LUTs and time. A variant may have frames alone."""
-    # The first rows of a variant have its own firmware.
+    LUTs and time. A variant may have frames, but no cells."""
+    # The first rows of a variant are those with its own firmware.
     own = frames.drop_duplicates(["variant", "scene"])
     cycles, whole = (own.pivot(index="variant", columns="scene", values=part).loc[own.variant.unique()] for part in ("soft_core", "cycles"))
     found = cells.set_index("variant").reindex(cycles.index)

@@ -46,7 +46,7 @@ impl Shape {
 
     /// Area and centre of mass of the shape with radius 1, summed over a grid of squares of side 1/200.
     pub fn area_and_centre(self) -> (f64, [f64; 2]) {
-        // Every hand of a frame needs them, and the sum takes longer than the frame.
+        // Cached, because every hand needs these values, and their computation takes longer than a frame.
         static SUMS: [OnceLock<(f64, [f64; 2])>; 2] = [const { OnceLock::new() }; 2];
         *SUMS[self as usize].get_or_init(|| self.sum())
     }

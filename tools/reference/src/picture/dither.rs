@@ -12,7 +12,7 @@ use crate::camera::Vector;
 pub enum Matrix {
     /// Bayer's matrix of 2^n × 2^n thresholds. With n = 0 colours are rounded to nearest.
     Bayer(u32),
-    /// That of the engine ([`Rounding::threshold`]): 4×4 places, eight thresholds for red and blue, four for green.
+    /// The engine's matrix ([`Rounding::threshold`]) of 4×4 places: eight thresholds for red and blue, four for green.
     Glint,
 }
 
@@ -25,7 +25,7 @@ impl Matrix {
         }
     }
 
-    /// Addends of red, green and blue before they are rounded down, in steps of RGB565.
+    /// The thresholds of red, green and blue, in steps of RGB565: the addends of the channels before they are rounded down.
     fn thresholds(self, [x, y]: [u32; 2]) -> Vector {
         let middle = |number: u32, log2: u32| (f64::from(number) + 0.5) / f64::from(1 << log2);
         match self {
@@ -61,8 +61,9 @@ impl Matrix {
             .collect()
     }
 
-    /// Rounds the samples of a picture of 1280×720, and then their averages, as the engine does. `samples` are the pictures of the four samples
-    /// of a pixel, row by row. A sum of four channels has two fraction bits, so an average has four of the matrix's thresholds.
+    /// Rounds the samples of a picture of 1280×720, and then the averages of the rounded samples, as the engine does. `samples` are the
+    /// pictures of the four samples of a pixel, row by row. A sum of four channels has two fraction bits, so an average has four of the
+    /// matrix's thresholds.
     pub fn averages(self, samples: [&[Vector]; 4]) -> Vec<Rgb565> {
         let columns = SHOWN.width();
         let mut picture = Vec::new();
@@ -138,14 +139,14 @@ mod tests {
         }
     }
 
-    /// The engine's channels with fraction bits are rounded as exact channels are.
+    /// The engine rounds channels with fraction bits like the matrix rounds exact channels.
     #[test]
     fn the_engine_rounds_in_the_same_way() {
         for rounding in [Rounding::Dithered, Rounding::Nearest] {
             for place in (0..4).flat_map(|y| (0..4).map(move |x| [x, y])) {
                 for number in 0..=248 {
                     let fine = [number, number.min(252), number];
-                    // Above a tie, which rounding errors would decide.
+                    // Slightly above a tie: rounding errors would otherwise decide the result.
                     let steps = fine.map(|channel| f64::from(channel) + 1e-9);
                     let colour = [0, 1, 2].map(|i: usize| {
                         let (most, fractions) = [(31.0, 8.0), (63.0, 4.0), (31.0, 8.0)][i];

@@ -143,11 +143,11 @@ pub(super) fn cone_hit(radius: f64, height: f64, ray: &Ray, t_min: f64) -> Optio
         }
     };
     let a = d[0] * d[0] + d[1] * d[1] - k * k * d[2] * d[2];
-    // With this zero, a ray along a generator of the cone has its other solution at the right end of the line.
+    // The negative zero gives a ray parallel to a generator its other solution at the correct infinity.
     let a = if a == 0.0 { -0.0 } else { a };
     let b = q[0] * d[0] + q[1] * d[1] - k * k * q[2] * d[2];
     let c = q[0] * q[0] + q[1] * q[1] - k * k * q[2] * q[2];
-    // The product of the tangent planes, or the sum of squares, has no difference of nearly equal numbers far from the outline.
+    // The discriminant in this form has no cancellation for rays far from the cone's outline.
     let turned = q[2] * d[0] - q[0] * d[2];
     let other = q[2] * d[1] - q[1] * d[2];
     let cross = q[0] * d[1] - q[1] * d[0];
@@ -158,7 +158,7 @@ pub(super) fn cone_hit(radius: f64, height: f64, ray: &Ray, t_min: f64) -> Optio
     let root = -b - square.sqrt().copysign(b);
     let (t0, t1) = (root / a, c / root);
     let (first, second) = (t0.min(t1), t0.max(t1));
-    // Inside between the solutions, or outside of them for a ray as steep as the cone.
+    // The ray is inside the double cone between the solutions, or outside of them if it is at least as steep as the cone.
     let parts = match a > 0.0 {
         true => [(first, second), (f64::INFINITY, f64::INFINITY)],
         false => [(f64::NEG_INFINITY, first), (second, f64::INFINITY)],

@@ -110,7 +110,7 @@ fn the_committed_tables_name_commits_of_the_history() {
     if git(&["rev-parse", "--is-shallow-repository"]).is_none_or(|shallow| shallow != "false") {
         return println!("the checkout has no complete history");
     }
-    for file in fs::read_dir(workspace::path("docs/report")).expect("docs/report is there") {
+    for file in fs::read_dir(workspace::path("docs/report")).expect("docs/report exists") {
         let path = file.expect("an entry").path();
         if path.extension().is_none_or(|extension| extension != "csv") {
             continue;
@@ -181,7 +181,7 @@ const SECTIONS: [&str; 4] = [
 
 #[test]
 fn every_page_has_the_same_sections() {
-    let files = fs::read_dir(workspace::path("docs/report")).expect("docs/report is there");
+    let files = fs::read_dir(workspace::path("docs/report")).expect("docs/report exists");
     let paths = files.map(|file| file.expect("an entry").path());
     let is_page = |path: &PathBuf| {
         path.extension().is_some_and(|found| found == "md") && !path.ends_with("README.md")

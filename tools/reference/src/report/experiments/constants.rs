@@ -54,7 +54,7 @@ pub fn all() -> Vec<Row> {
     rows
 }
 
-/// A part as text in percent, without the binary rounding of its product.
+/// A fraction as text in percent, rounded to hide the error of the binary product.
 fn percent(part: f64) -> String {
     format!("{}", (part * 1e8).round() / 1e6)
 }

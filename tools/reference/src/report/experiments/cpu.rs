@@ -24,7 +24,7 @@ const SCENES: [&str; 5] = [
     "wireframe",
 ];
 
-/// The block of the default variant among the clock rates, which every measurement of rates includes.
+/// Name of the default variant's block; every measurement of clock rates includes this block.
 const REFERENCE: &str = "vexriscv";
 
 /// Clock rate and cells of a variant: a line of `cpu-cores.csv`.
@@ -99,7 +99,7 @@ pub fn cores(only: &str) -> Result<Vec<Core>> {
     names.iter().copied().map(core).collect()
 }
 
-/// Measures a frame of each scene on a virtual board with each variant whose name contains `only`, and on one with the default variant
+/// Measures a frame of each scene on a virtual board with each variant whose name contains `only`, and on a board with the default variant
 /// and the firmware for variants without a cycle counter. Two boards run at a time.
 ///
 /// # Errors

@@ -42,7 +42,7 @@ pub struct Cycles {
     pub cycles: u64,
 }
 
-/// Samples in a line of a pixel of the reference for colours, and lines of samples.
+/// Number of columns and of rows of samples in a pixel of the reference for colours.
 const ACROSS: u32 = 8;
 
 /// The changes of a scene to a quality.
@@ -63,8 +63,8 @@ pub fn scenes(only: &str) -> impl Iterator<Item = SceneFile> {
     })
 }
 
-/// Measures the errors of the scenes whose names contain `only`, in the qualities that are `wanted`: wrong pixels at their centres, and colours
-/// against the mean of 64 samples.
+/// Measures the errors of the scenes whose names contain `only`, in the qualities for which `wanted` is true: wrong surfaces at pixel
+/// centres, and colours against the mean of 64 samples.
 ///
 /// # Errors
 /// A scene cannot be drawn.
@@ -89,8 +89,8 @@ pub fn errors(only: &str, wanted: impl Fn(Quality) -> bool) -> Result<Vec<Row>> 
     Ok(rows)
 }
 
-/// Measures the cycles of the frames of scenes in all qualities, with this number of samples a pixel or by default that of the quality, on two
-/// virtual boards at a time.
+/// Measures the cycles of the frames of scenes in all qualities, with this number of samples a pixel, by default the quality's number, on
+/// two virtual boards at a time.
 ///
 /// # Errors
 /// A board is not built, or a frame differs from the model's.

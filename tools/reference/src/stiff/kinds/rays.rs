@@ -22,7 +22,7 @@ struct Input {
     eye: [i32; 3],
     /// The direction D in units of 2^-27. A component of 0 counts as positive.
     direction: [i32; 3],
-    /// The far limit, in units of the parameter from the ray's end at the usual far limit.
+    /// The far limit, relative to the parameter at which the ray ends with the default far limit, in units of the parameter.
     far: Option<i64>,
 }
 

@@ -44,7 +44,8 @@ const HALF_WIDTH: f64 = 0.4781;
 /// The scenes and meshes of which frames are also drawn back to back.
 const OVERLAPPED: [&str; 4] = ["menger", "objects", "room", "teapot"];
 
-/// Number of geometry and raster passes, one for each sample of a pixel, in which frames are drawn back to back.
+/// Number of passes of each kind in a measurement of frames drawn back to back; a frame has one geometry and one raster pass for each
+/// sample of a pixel.
 const PASSES: u32 = 8;
 
 impl Case {
@@ -118,7 +119,7 @@ pub fn measure(only: &str) -> Result<Vec<Cycles>> {
     Ok(rows.into_iter().flatten().collect())
 }
 
-/// Cycles of a frame drawn alone and, for some cases, of one of `frames` drawn back to back.
+/// Cycles of a frame drawn alone and, for some cases, the mean cycles of `frames` frames drawn back to back.
 fn frame_cycles(
     firmware: &[u8],
     case: &Case,

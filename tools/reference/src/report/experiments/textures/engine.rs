@@ -31,7 +31,7 @@ enum Model {
     Sphere(Option<Texels>),
     /// A square of two triangles, whose far end is at the horizon.
     Floor(Texels),
-    /// A sphere of this number of bands, twice as many sectors, and two triangles for each of their fields.
+    /// A sphere of this number of bands and twice as many sectors, with two triangles for each quadrilateral.
     Globe(u32, Texels),
 }
 
@@ -51,7 +51,7 @@ const fn texels(size_log2: [u8; 2], format: Format, filter: Filter) -> Texels {
     }
 }
 
-/// What is drawn, and what must be reached: pixels a clock, or frames a second at 81.25 MHz.
+/// A measured scene with its requirement: pixels a clock, or frames a second at 81.25 MHz.
 struct Case {
     name: &'static str,
     size: Size,
@@ -208,11 +208,11 @@ pub struct Row {
     pub pixels: u64,
     /// Cycles of a frame.
     pub cycles_frame: f64,
-    /// Cycles of its geometry pass.
+    /// Cycles of the frame's geometry pass.
     pub cycles_geometry: f64,
-    /// Cycles of its raster pass.
+    /// Cycles of the frame's raster pass.
     pub cycles_raster: f64,
-    /// Pixels per clock in which a pass runs.
+    /// Covered pixels divided by the clocks in which a pass runs.
     pub rate: f64,
     /// Frames per second at 81.25 MHz.
     pub frames: f64,
