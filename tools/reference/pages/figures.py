@@ -106,14 +106,14 @@ def samples(errors, cycles):
 
 
 def ratios(cycles):
-    """The least and the largest ratio of the cycles of a frame with four samples a pixel to those of one with one sample."""
+    """The smallest and the largest ratio of the cycles of a frame with four samples a pixel to the cycles of the frame with one sample."""
     alone = cycles.pivot(index="scene", columns="samples", values="alone")
     found = alone[4] / alone[1]
     return found.min(), found.max()
 
 
 def patterns(errors):
-    """The errors of each pattern of samples: RMS of the scenes. The centre is the grid of one sample."""
+    """The errors of each pattern of samples: RMS of the scenes. The pattern `centre` counts as the grid of one sample."""
 
     def of(column, chosen):
         return chosen.groupby(["pattern", "samples"], sort=False)[column].agg(root_mean_square)

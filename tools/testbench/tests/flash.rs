@@ -80,7 +80,7 @@ impl Bench {
             if cs_n {
                 assert!(
                     self.idle_clocks >= 3,
-                    "STARTUPE2 drops the first three clocks"
+                    "expected three idle clocks, because STARTUPE2 drops the first three"
                 );
                 assert!(!clk && !rises, "the clock has an edge together with CS#");
             }

@@ -49,7 +49,7 @@ pub fn bootstrap() -> Result<()> {
     all([debian_packages(), rust_targets(), python_environment()])
 }
 
-/// Installs the prerequisites of the Rust crates: those of [`bootstrap`] without the Python environment.
+/// Installs the prerequisites of the Rust crates: all prerequisites except the Python environment.
 ///
 /// # Errors
 /// Those of [`bootstrap`].

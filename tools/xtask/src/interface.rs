@@ -481,7 +481,7 @@ mod tests {
         Interface::load(&read).unwrap()
     }
 
-    /// The lines of the modules' items, without those of `LIB`.
+    /// The lines of the items in the modules, without the lines of the items in `LIB`.
     fn lines(board: &str, lines: &str) -> Vec<String> {
         let of_lib = interface("", "").lines;
         let all = interface(board, lines).lines;

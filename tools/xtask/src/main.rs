@@ -67,7 +67,7 @@ enum Task {
     },
     /// List the public interface of the library of programs; fail if an item has no example in its documentation
     Interface {
-        /// Write nothing; fail if the interface is not that of the committed list
+        /// Write nothing; fail if the interface differs from the committed list
         #[arg(long)]
         check: bool,
     },

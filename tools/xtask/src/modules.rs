@@ -286,8 +286,8 @@ impl Crate {
 }
 
 impl Module {
-    /// Reads tokens below `level` inline modules. With `has_items`, the tokens are those of a module, and a name after `fn`, `struct` and
-    /// so on defines an item of the module.
+    /// Reads tokens below `level` inline modules. With `has_items`, the tokens are at module level, and a name after `fn`, `struct` and so
+    /// on defines an item of the module.
     fn scan(&mut self, tokens: TokenStream, level: usize, has_items: bool) {
         let tokens: Vec<TokenTree> = tokens.into_iter().collect();
         let (mut at, mut is_public) = (0, false);

@@ -431,7 +431,7 @@ fn measure_quality(
     Ok(())
 }
 
-/// Measures errors and cycles, or only those of `study`.
+/// Measures errors and cycles, or only the table or group of tables `study`.
 fn measure_antialiasing(study: Option<&str>, only: Option<&str>, to: &Folder) -> Result<()> {
     let only = only.unwrap_or_default();
     if study != Some("cycles") {

@@ -48,8 +48,8 @@ impl Exact {
         Self::at(frame, [0.0; 2])
     }
 
-    /// Draws a frame as [`new`](Self::new), with each sample `offset` pixels to the right of and below its pixel's centre. Lines are a pixel
-    /// wide.
+    /// Draws a frame like [`new`](Self::new), with each sample `offset` pixels to the right of and below its pixel's centre. Lines are a
+    /// pixel wide.
     ///
     /// # Errors
     /// As for [`new`](Self::new).
@@ -98,7 +98,7 @@ fn size() -> Size {
     Size { width, height }
 }
 
-/// The columns and lines of the samples of all pixels, row by row.
+/// The position of the sample of each pixel, as column and line, row by row.
 fn places([right, down]: [f64; 2]) -> impl Iterator<Item = [f64; 2]> {
     let [columns, rows] = SHOWN.pixels();
     let rows = (0..rows).map(move |y| f64::from(y) + down);

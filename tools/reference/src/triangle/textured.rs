@@ -136,7 +136,7 @@ impl Scene {
         }
     }
 
-    /// Calls `visit` for each row of each triangle, with the row's number and covered pixels. The order is that of the engine: band by band.
+    /// Calls `visit` for each row of each triangle, with the row's number and covered pixels. The order is the engine's: band by band.
     ///
     /// # Panics
     /// If the model refuses the frame.

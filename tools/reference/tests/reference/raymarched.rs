@@ -24,7 +24,7 @@ fn setup(scene: &str, camera: &Camera, options: &FieldOptions) -> FieldSetup {
     FieldSetup::new(&scene, &view, SIZE, options).expect("a size")
 }
 
-/// Draws a picture and checks that its hits and misses are those of the reference.
+/// Draws a picture, and checks that hits and misses are at the same pixels as in the reference.
 fn see(name: &str, scene: &str, camera: &Camera) -> Seen {
     let subject = Subject::new(name, scene, camera, SIZE);
     let picture = subject.picture(&FieldOptions::default());
@@ -101,7 +101,7 @@ fn a_camera_in_the_plane_of_a_face_sees_what_is_before_it() {
         .near(1e-9, 2e-6)
         .faced(0.0)
         .cheap(0.7);
-    // The eye is in the plane of the front face. Half of the rays go into the face, and the other half away from it.
+    // The eye is in the plane of the front face. Half of the rays enter the face, and half of the rays leave it.
     let on = at([0.9375, -1.0, 0.9375], [-0.5, -1.5, 0.5]);
     see("on the front", "menger:4", &on)
         .near(1e-6, 1e-6)

@@ -58,7 +58,7 @@ fn a_quick_report_is_written_and_shipped_kernels_keep_their_bounds() {
             .arg("--transcript")
             .arg(&transcript),
     );
-    let rows: Vec<sine::Row> = read_csv(&folder.join("sine.csv")).expect("the report writes it");
+    let rows: Vec<sine::Row> = read_csv(&folder.join("sine.csv")).expect("the report writes the file");
     let shipped: Vec<_> = rows.iter().filter(|row| row.shipped).collect();
     assert_eq!(shipped.len(), 2);
     for row in shipped {
@@ -72,7 +72,7 @@ fn a_quick_report_is_written_and_shipped_kernels_keep_their_bounds() {
             .all(|row| row.kernel == "sin_cos_q30" || row.cycles_median.is_none())
     );
 
-    let read = |name: &str| fs::read_to_string(folder.join(name)).expect("the report writes it");
+    let read = |name: &str| fs::read_to_string(folder.join(name)).expect("the report writes the file");
     assert!(read("sine.svg").contains("<svg"));
     let page = read("sine.md");
     assert!(

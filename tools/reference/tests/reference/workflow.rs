@@ -77,7 +77,7 @@ impl Run {
     fn written(&self, table: &str) -> SystemTime {
         let table = fs::metadata(self.folder.join("tables").join(table));
         let time = table.and_then(|table| table.modified());
-        time.expect("the job has ended")
+        time.expect("the job has written its table")
     }
 }
 
@@ -96,7 +96,7 @@ fn every_page_has_a_job() {
     }
 }
 
-/// If a run by two workers continues a run that was killed, its tables equal those of a run by one worker.
+/// A run by two workers that continues a killed run writes the same tables as a run by one worker.
 #[test]
 fn a_killed_run_goes_on_and_writes_the_same_tables() {
     let run = Run::new("workflow-killed");
@@ -127,7 +127,7 @@ fn a_killed_run_goes_on_and_writes_the_same_tables() {
         let committed = fs::read_to_string(workspace::path("docs/report").join(table));
         assert!(
             table_of_one != committed.expect("readable"),
-            "{table}: not that of the quick run"
+            "{table}: expected the table of the quick run, found the committed table"
         );
     }
     assert!(

@@ -1,5 +1,5 @@
-//! Tests of the band buffer: the pixels must equal those of a plain depth test, and each flush must
-//! write the band's changed words in order.
+//! Tests of the band buffer: the pixels must equal the pixels of a software depth test, and each flush must write the band's changed words
+//! in order.
 
 mod bench;
 mod pixels;

@@ -83,9 +83,9 @@ pub struct Bench {
     was_fetching: bool,
     counted: Counted,
     counted_before: Counted,
-    /// Source lines that the module has reported as complete.
+    /// Number of source lines that the module has reported as complete.
     pub lines: u64,
-    /// Words that the module has reported.
+    /// Number of words that the module has reported as read.
     pub words: u64,
     expected_error: u64,
     late_before: u64,

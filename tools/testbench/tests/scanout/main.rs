@@ -126,7 +126,7 @@ fn starved_memory_never_disturbs_the_raster() {
     }
     assert!(
         late > 500 && again > 20,
-        "{late} late lines, {again} caught up"
+        "{late} late lines, {again} of them shown late"
     );
 }
 

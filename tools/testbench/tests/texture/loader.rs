@@ -260,7 +260,7 @@ fn a_load_takes_twice_the_latency_and_a_clock_per_colour() {
             let colours = format.colours() as u64;
             let words = if colours > 0 { latency + 2 } else { 0 };
             let most = 2 * latency + 22 + words + colours;
-            assert!(clocks <= most, "{format:?}: {clocks} clocks, not {most}");
+            assert!(clocks <= most, "{format:?}: {clocks} clocks: expected at most {most}");
         }
     }
 }

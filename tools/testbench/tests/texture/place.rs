@@ -33,7 +33,7 @@ fn texture(size_log2: [u8; 2], wrap: Wrap, is_one_level: bool) -> Vec<u8> {
     .unwrap()
 }
 
-/// Makes a triangle with a texture. Its planes are those of a frame, or random if `is_wild`.
+/// Makes a triangle with a texture. Its planes are computed as for a frame, or random if `is_wild`.
 fn triangle<'a>(
     texture: Texture<'a>,
     vectors: &mut Random,

@@ -227,7 +227,7 @@ fn nothing_new_is_not_written() {
     }
 }
 
-/// At the end of a pass, all its words are in memory, even the last lengths of lists. The engine writes nothing after the end, so
+/// At the end of a pass, all words of the pass are in memory, even the last lengths of lists. The engine writes nothing after the end, so
 /// its clock may stop.
 #[test]
 fn all_is_in_memory_when_a_pass_has_ended() {

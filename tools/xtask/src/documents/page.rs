@@ -11,7 +11,7 @@ pub struct Block {
     pub line: usize,
     /// Text without code. In a table row each cell is followed by the headings of its column and row.
     pub text: String,
-    /// Links; those of a table row include the links of the block before the table.
+    /// Links. The links of a table row include the links of the block before the table.
     pub links: Vec<String>,
 }
 

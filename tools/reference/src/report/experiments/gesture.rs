@@ -22,7 +22,7 @@ pub const RATE: f64 = 60.0;
 pub struct Centre {
     /// Shape and area of the hand.
     pub hand: String,
-    /// Setting of the engine.
+    /// The pixels that the engine counts: the region, and the minimum length of runs.
     pub counted: String,
     /// Whether the firmware uses this setting.
     pub shipped: bool,

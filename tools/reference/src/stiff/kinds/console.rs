@@ -48,7 +48,7 @@ pub struct Session {
     pub lines: Vec<String>,
 }
 
-/// Commands before those of a case: pictures that take little time.
+/// Commands that run before the commands of a case, to make pictures small and fast.
 const SMALL: [&str; 2] = ["size 320 180", "aa 1"];
 
 /// Starts a board with this sensor, which draws small pictures with one sample a pixel, and executes these commands and a wait in

@@ -85,7 +85,7 @@ fn check(case: &Case, tally: &mut Tally) {
                 assert_eq!(
                     usize::from(colour),
                     triangle + 1,
-                    "{}: the wrong triangle in front",
+                    "{}: a wrong triangle is visible",
                     place()
                 );
                 let exact = (inverse_depth * depth_scale).max(1.0);
@@ -113,10 +113,10 @@ fn the_right_surface_is_in_front_wherever_it_is_certain() {
     println!("visible surfaces of 200 random scenes: {tally:?}");
     assert!(
         tally.surface > 1_000_000,
-        "too few pixels are certain: {tally:?}"
+        "too few pixels have a certain surface: {tally:?}"
     );
     assert!(
         tally.unstable * 20 < tally.stable,
-        "too many pixels are uncertain: {tally:?}"
+        "too many pixels have an uncertain surface: {tally:?}"
     );
 }

@@ -62,7 +62,7 @@ impl Default for Gathered {
 }
 
 impl Bench {
-    /// Sets the engine up for a geometry pass of segments.
+    /// Configures the engine for a geometry pass of segments.
     pub fn configure_lines(&mut self, segments: &[Segment], expected: &Expected) {
         self.configure(&[], expected);
         let header = Segment::header(segments.len() as u32);

@@ -53,7 +53,8 @@ pub fn reference(frame: &Frame) -> Result<Averaged> {
     Averaged::new(frame, &grid(8))
 }
 
-/// The patterns, with their names. The pattern of eight samples is that of Direct3D: no two are in the same column or line.
+/// The patterns, with their names. The pattern of eight samples is the standard pattern of Direct3D: no two samples are in the same column
+/// or line.
 fn patterns() -> Vec<(&'static str, Pattern)> {
     let sixteenths = |places: &[[i8; 2]]| {
         let place = |place: &[i8; 2]| place.map(|part| f64::from(part) / 16.0);

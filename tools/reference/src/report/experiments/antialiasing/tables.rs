@@ -23,7 +23,7 @@ pub struct Tables {
     pub light: Vec<LightRow>,
 }
 
-/// Measures the errors of the scenes whose names contain `only`, and those of the ramp.
+/// Measures the errors of the scenes whose names contain `only`, and the errors of the ramp.
 ///
 /// # Errors
 /// A scene cannot be drawn.

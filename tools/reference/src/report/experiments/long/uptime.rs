@@ -175,7 +175,7 @@ impl Bench {
         let answers = expected.iter().zip(&found).zip(names);
         let others = answers.filter(|((expected, found), _)| expected != found);
         let others: Vec<_> = others
-            .map(|((expected, found), name)| format!("{name}: {found}, not {expected}"))
+            .map(|((expected, found), name)| format!("{name}: expected {expected}, found {found}"))
             .collect();
         let what = format!("replies to {}", names.join(", "));
         let same = format!("the {} of the start", QUESTIONS.len());

@@ -18,7 +18,7 @@ pub struct Row {
     pub bytes: u32,
     /// Number of ways of each set.
     pub ways: u32,
-    /// Number of pixels.
+        /// Number of covered pixels.
     pub pixels: u64,
     /// Number of blocks of 32 bytes that are loaded.
     pub misses: u64,
@@ -64,8 +64,8 @@ impl Cache {
         let [x, y, level] = block;
         let bits = self.sets.len().ilog2();
         let across = bits.div_ceil(2);
-        // Neighbouring blocks are in different sets. The sets form a square; each level is shifted against the previous level by half of
-        // the square's side.
+        // The low bits of column and row select the set, so neighbouring blocks are in different sets: the sets form a square. Each level
+        // is offset from the previous level by half of the square's side.
         let (x, y) = (x + (level << (across - 1)), y + (level << (across - 1)));
         let set = x & ((1 << across) - 1) | (y & ((1 << (bits - across)) - 1)) << across;
         let set = &mut self.sets[set as usize];
