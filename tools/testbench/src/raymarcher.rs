@@ -31,7 +31,7 @@ pub struct Raymarcher {
     rounding: Rounding,
 }
 
-/// Cost of a frame.
+/// Clocks and counters of a frame.
 #[derive(Clone, Copy, Debug)]
 pub struct FrameCost {
     /// Clocks from the start of the frame to its end.

@@ -32,7 +32,7 @@ const PACKAGES: [(&str, &str); 9] = [
 /// Rust target of the live page's emulated board.
 pub const WEB_TARGET: &str = "wasm32-unknown-unknown";
 
-/// Rust targets.
+/// Rust targets of the firmware and of the live page.
 const RUST_TARGETS: [&str; 2] = [firmware::TARGET, WEB_TARGET];
 
 /// Pinned Python packages, for the gateware and for the report.

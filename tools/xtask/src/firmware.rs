@@ -47,9 +47,9 @@ fn main_ram(board: Board) -> Result<u64> {
 pub struct Image {
     /// Length of the image.
     pub length: u64,
-    /// Code.
+    /// Instructions, without constants.
     pub code: u64,
-    /// Constants.
+    /// Read-only data.
     pub constants: u64,
     /// Variables: initialised variables, which are also in the image, and zeroed variables.
     pub variables: u64,

@@ -158,7 +158,7 @@ pub struct Recordings {
     pub rest: Vec<Sample>,
     /// A steady motion, without the frames in which the hand jumps back to its start.
     pub sweep: Vec<Sample>,
-    /// Reaches.
+    /// Fast motions of the hand between positions.
     pub reaches: Vec<Sample>,
 }
 

@@ -34,8 +34,8 @@ pub struct Measured {
     pub colour: f64,
 }
 
-/// Draws a frame with the model, and compares the displayed picture with the same frame in f64: the surface at the centre of each pixel with
-/// `exact`, and its colour with `mean`. A pixel of a smaller picture is a square of the monitor's pixels.
+/// Draws a frame with the model, and compares the displayed picture with the same frame in f64: the surface at the centre of each pixel
+/// with `exact`, and its colour with `mean`. A pixel of a smaller picture is a square of the monitor's pixels.
 ///
 /// # Errors
 /// The model cannot draw the frame.

@@ -38,9 +38,9 @@ pub fn depth(exits: &Exits, t: i64) -> f64 {
     units / exits.scale.to_num::<f64>()
 }
 
-/// The largest depth of a hit by an eye's ray, in world units along the camera's n. `direction` is the ray's direction, whose component along
-/// n is 1. A repeated solid ends 2^11 field units from the lower corner of the eye's cell along each axis; a surface exactly at the end
-/// counts as beyond it.
+/// The largest depth of a hit by an eye's ray, in world units along the camera's n. `direction` is the ray's direction, whose component
+/// along n is 1. A repeated solid ends 2^11 field units from the lower corner of the eye's cell along each axis; a surface exactly at the
+/// end counts as beyond it.
 pub fn reach(exits: &Exits, eye: usize, direction: Vector) -> f64 {
     let far = depth(exits, exits.far);
     let is_repeated = exits

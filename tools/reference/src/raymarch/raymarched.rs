@@ -40,8 +40,8 @@ pub fn depth(setup: &FieldSetup, depth: u64) -> f64 {
     units / setup.scale.to_num::<f64>()
 }
 
-/// Returns the largest depth of a hit by a ray, in world units along the camera's n. `direction` is the ray's direction, whose component along n
-/// is 1.
+/// Returns the largest depth of a hit by a ray, in world units along the camera's n. `direction` is the ray's direction, whose component
+/// along n is 1.
 pub fn reach(setup: &FieldSetup, eye: usize, direction: Vector) -> f64 {
     match &setup.form {
         Form::Exits(exits) => exited::reach(exits, eye, direction),

@@ -7,7 +7,7 @@ use super::outcome::Outcome;
 
 /// A kind of cases: its name in the catalogue, and the function that runs a case on its input.
 pub struct Kind {
-    /// Name.
+    /// Name in the catalogue.
     pub name: &'static str,
     run: Box<dyn Fn(toml::Value) -> Result<Outcome> + Send + Sync>,
 }

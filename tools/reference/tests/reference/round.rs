@@ -35,9 +35,9 @@ fn every_kind_of_field_is_where_it_is() {
     }
 }
 
-/// Compares the colours of a lit sphere or cone with the material times the light, plus the highlight. The light is the sum of the ambient light
-/// and, for each light, its colour times max(0, n·l); the highlight is the first light's colour times STRENGTH·max(0, n·h)^EXPONENT. n is
-/// the exact normal, l the direction to a light, and h the direction halfway to the first light and to the camera.
+/// Compares the colours of a lit sphere or cone with the material times the light, plus the highlight. The light is the sum of the ambient
+/// light and, for each light, its colour times max(0, n·l); the highlight is the first light's colour times STRENGTH·max(0, n·h)^EXPONENT.
+/// n is the exact normal, l the direction to a light, and h the direction halfway to the first light and to the camera.
 #[test]
 fn round_surfaces_are_lit_as_they_should_be() {
     let light = |text| Light::parse(text).expect("a light");

@@ -132,7 +132,7 @@ fn chequerboard(side_log2: [u8; 2], one_in: u32, cutoff: Option<f32>) -> Result<
     Ok(convert(&picture, &options)?.0)
 }
 
-/// The difference of the mean colour of a floor with a chequerboard from the mean of its texels in linear light.
+/// The difference between the mean colour of a floor with a chequerboard and the mean of the texels in linear light.
 fn mean_error(floor: Floor) -> Result<Outcome> {
     let picture = floor.picture(chequerboard(floor.side_log2, 2, None)?)?;
     let covered = picture.colour.iter().zip(&picture.depth);
@@ -215,7 +215,7 @@ struct Foggy {
     exponent: i32,
 }
 
-/// The difference of the share of the fog from the exact one at the depth of the code.
+/// The error of the fog's share at the depth of the code, compared with f64.
 fn fog_error(foggy: Foggy) -> Result<Outcome> {
     let density = U4_28::from_bits(foggy.density);
     let scale = DepthScale {

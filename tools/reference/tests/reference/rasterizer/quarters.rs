@@ -203,8 +203,8 @@ fn quarters_have_the_samples_of_the_whole_picture() {
     );
 }
 
-/// A vertex whose position is in steps of 1/256 sample from the middle of the picture. All have the same depth, because other depths would be
-/// too steep in a sliver.
+/// A vertex whose position is in steps of 1/256 sample from the middle of the picture. All have the same depth, because other depths would
+/// be too steep in a sliver.
 fn vertex([x, y]: [i32; 2]) -> ScreenVertex {
     ScreenVertex {
         x: STEPS * MIDDLE[0] + x,

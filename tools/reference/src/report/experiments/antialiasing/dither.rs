@@ -9,8 +9,8 @@ use crate::picture::SHOWN;
 use crate::picture::averaged::grid;
 use crate::picture::dither::Matrix;
 
-/// Errors of averages of four samples after their rounding to RGB565, against the same averages in f64: a line of `antialiasing-dither.csv`.
-/// Errors are of a channel in steps of 1/255.
+/// Errors of averages of four samples after their rounding to RGB565, against the same averages in f64: a line of
+/// `antialiasing-dither.csv`. Errors are of a channel in steps of 1/255.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct DitherRow {
     /// The pictures: `scenes` for all scenes, or `ramp`.

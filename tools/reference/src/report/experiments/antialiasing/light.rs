@@ -6,8 +6,8 @@ use super::compared::{Compared, FourSamples, mean};
 use crate::camera::Vector;
 use crate::picture::averaged::Averaged;
 
-/// Differences between averages of four samples in linear light and averages of their sRGB values, in f64: a line of `antialiasing-light.csv`.
-/// Differences are of a channel in steps of 1/255.
+/// Differences between averages of four samples in linear light and averages of their sRGB values, in f64: a line of
+/// `antialiasing-light.csv`. Differences are of a channel in steps of 1/255.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct LightRow {
     /// Name of the scene.
