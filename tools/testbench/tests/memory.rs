@@ -38,7 +38,7 @@ enum Access {
     Read(u64, u64),
 }
 
-/// A bus of the CPU. A request holds until its last word is acknowledged.
+/// A bus of the CPU. A request stays valid until its last word is acknowledged.
 struct Bus {
     cyc: Port,
     adr: Port,

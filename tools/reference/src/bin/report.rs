@@ -102,7 +102,7 @@ enum Page {
     },
     /// Reciprocals, roots, quotients, lengths, depth codes, colours and number formats: errors, and cycles or bits
     Kernels {
-        /// Measure a sample of the inputs instead of all
+        /// Measure a sample of the inputs instead of all inputs
         #[arg(long)]
         quick: bool,
         #[command(flatten)]

@@ -94,8 +94,7 @@ fn small_and_lit(random: &mut Random, text: &str) -> (FieldSetup, Palette) {
     (setup, palette)
 }
 
-/// Draws cones alone and in unions, in all lights. Fields with a cone follow fields without one,
-/// and vice versa.
+/// Draws cones alone and in unions, with random lights. Fields with a cone follow fields without one, and vice versa.
 #[test]
 fn frames_of_cones_in_all_lights() {
     let mut random = Random(15);

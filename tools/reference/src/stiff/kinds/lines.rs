@@ -26,7 +26,7 @@ pub fn kinds() -> Vec<Kind> {
             let drawn = all
                 .filter(|&place| !pixels([place; 2], [0, 640]).is_empty())
                 .count();
-            Ok(Outcome::exact(format!("{drawn} of them have pixels")))
+            Ok(Outcome::exact(format!("{drawn} of the segments have pixels")))
         }),
     ]
 }
@@ -71,5 +71,5 @@ fn along_axis(turned: impl Fn([i64; 2]) -> [i64; 2]) -> Outcome {
             return Outcome::exact(format!("other pixels at {across}/256"));
         }
     }
-    Outcome::exact("one pixel in each column or row, in the line of pixels nearest to it")
+    Outcome::exact("one pixel in each column or row, in the line of pixels nearest to the segment")
 }

@@ -149,7 +149,7 @@ fn mean_error(floor: Floor) -> Result<Outcome> {
     Ok(Outcome::Error((mean - exact).abs(), "of 255"))
 }
 
-/// The share of the pixels of a floor that are not holes, for a texture one of whose four texels is opaque.
+/// The share of the floor's pixels that are not holes. One of four texels of the texture is opaque.
 fn opaque_share(floor: Floor) -> Result<Outcome> {
     let with_holes = floor.picture(chequerboard(floor.side_log2, 4, Some(0.5))?)?;
     let whole = floor.picture(chequerboard(floor.side_log2, 4, None)?)?;

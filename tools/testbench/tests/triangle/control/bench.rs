@@ -268,7 +268,7 @@ impl Bench {
                     assert!(!started, "{name} starts after it was cancelled");
                 }
                 State::Asked(since, _) if now < since => {
-                    assert!(!started, "{name} starts without its parameters");
+                    assert!(!started, "{name} starts before its parameters are loaded");
                 }
                 State::Asked(since, refusal) => {
                     // Both passes may be requested in one clock, so the limit is twice a pass's latency. The limit counts from

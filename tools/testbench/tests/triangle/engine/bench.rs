@@ -321,8 +321,8 @@ impl Bench {
             .drive_all("raster.descriptors", DESCRIPTORS.map(bytes));
     }
 
-    /// Sets the sets that the raster pass draws: the number of descriptors of the first set, if it
-    /// is drawn, and of the second set, which is drawn if it is not empty.
+    /// Selects the descriptor sets that the raster pass draws: the first set with this number of descriptors, if any, and the second set if
+    /// it is not empty.
     pub fn set_sets(&mut self, first: Option<u64>, second: usize) {
         let counts = [first.unwrap_or(0), second as u64];
         self.module.drive_all("raster.count", counts);
@@ -418,7 +418,7 @@ impl Bench {
         self.set("raster.textures", bytes(TEXTURES));
     }
 
-    /// Draws a frame as of [`start_set`](Self::start_set), and compares it with the expected frame. Returns the number of clocks.
+    /// Draws a frame that [`start_set`](Self::start_set) starts, and compares it with the expected frame. Returns the number of clocks.
     pub fn draw_set(
         &mut self,
         name: &str,

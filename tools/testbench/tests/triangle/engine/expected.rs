@@ -19,7 +19,7 @@ pub const CLEAR: u16 = 0x1234;
 
 /// A frame drawn by the model.
 pub struct Expected {
-    /// Size of the picture that is drawn: of the samples of a frame with four samples a pixel.
+    /// Size of the drawn picture: in samples if a pixel has four samples.
     pub size: (u32, u32),
     /// The averages of a frame with four samples a pixel.
     pub averages: Option<Averages>,
@@ -220,7 +220,7 @@ pub fn picture(size: (u32, u32), view: &View, colour: Vec<u16>, depth: Vec<u32>)
     }
 }
 
-/// A gradient of random colours, as a sky or with fixed places.
+/// A gradient of random colours, which depends on the direction of view or has fixed places in the picture.
 pub fn gradient(random: &mut Pcg64Mcg) -> Gradient {
     Gradient {
         colours: random.random(),
