@@ -4,7 +4,7 @@ use glint_model::Sky;
 
 use crate::Module;
 
-/// Drives the port `sky` of a module, the type `triangle_registers_pkg::sky_t`.
+/// Drives the port `sky` of a module, which has the type `triangle_registers_pkg::sky_t`.
 pub fn drive_sky(module: &mut Module, sky: &Sky) {
     for (name, value) in [
         ("above", sky.above),

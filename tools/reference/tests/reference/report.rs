@@ -292,14 +292,14 @@ fn the_committed_parts_are_of_the_frames_of_all_scenes() {
         let picture = (row.scene.as_str(), row.width);
         assert_eq!(picture, (scene.name(), scene.size().width()));
         let parts = row.soft_core + row.geometry + row.raster;
-        assert_eq!(row.cycles, parts, "{}: the sum of its parts", row.scene);
+        assert_eq!(row.cycles, parts, "{}: expected the frame's cycles as the sum of the parts", row.scene);
         if row.evaluations.is_some() {
             let drawn = scene::draw(scene, &Changes::default(), render::on_model);
             let drawn = drawn.expect("a scene").expect("a picture");
             let now = drawn.stats.rays.map(|rays| rays.evaluations);
             assert_eq!(
                 row.evaluations, now,
-                "{}: evaluations in the table and now: run `cargo xtask report timeline`",
+                "{}: the evaluations differ from the table: run `cargo xtask report timeline`",
                 row.scene
             );
         }
@@ -338,7 +338,7 @@ fn the_committed_frames_a_second_are_of_these_frames() {
         assert_eq!(
             evaluations,
             Some(row.evaluations),
-            "{} turned by {}, {}, {}: evaluations now and in the table: run `cargo xtask report raymarch`",
+            "{} turned by {}, {}, {}: the evaluations differ from the table: run `cargo xtask report raymarch`",
             row.view,
             row.yaw,
             row.pitch,

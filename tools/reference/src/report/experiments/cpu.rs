@@ -155,7 +155,7 @@ fn frame(variant: Variant, scene: &SceneFile) -> Result<Row> {
     })
 }
 
-/// Output of the program for cells.
+/// Output of the program `resources` for sizes in cells.
 #[derive(Deserialize)]
 struct Sizes {
     blocks: Vec<Size>,
@@ -171,7 +171,7 @@ struct Size {
     ramb36: f64,
 }
 
-/// Output of the program for clock rates.
+/// Output of the program `resources` for clock rates.
 #[derive(Deserialize)]
 struct Rates {
     routed: Vec<Rate>,
