@@ -58,7 +58,8 @@ fn a_quick_report_is_written_and_shipped_kernels_keep_their_bounds() {
             .arg("--transcript")
             .arg(&transcript),
     );
-    let rows: Vec<sine::Row> = read_csv(&folder.join("sine.csv")).expect("the report writes the file");
+    let rows: Vec<sine::Row> =
+        read_csv(&folder.join("sine.csv")).expect("the report writes the file");
     let shipped: Vec<_> = rows.iter().filter(|row| row.shipped).collect();
     assert_eq!(shipped.len(), 2);
     for row in shipped {
@@ -72,7 +73,8 @@ fn a_quick_report_is_written_and_shipped_kernels_keep_their_bounds() {
             .all(|row| row.kernel == "sin_cos_q30" || row.cycles_median.is_none())
     );
 
-    let read = |name: &str| fs::read_to_string(folder.join(name)).expect("the report writes the file");
+    let read =
+        |name: &str| fs::read_to_string(folder.join(name)).expect("the report writes the file");
     assert!(read("sine.svg").contains("<svg"));
     let page = read("sine.md");
     assert!(
@@ -292,7 +294,11 @@ fn the_committed_parts_are_of_the_frames_of_all_scenes() {
         let picture = (row.scene.as_str(), row.width);
         assert_eq!(picture, (scene.name(), scene.size().width()));
         let parts = row.soft_core + row.geometry + row.raster;
-        assert_eq!(row.cycles, parts, "{}: expected the frame's cycles as the sum of the parts", row.scene);
+        assert_eq!(
+            row.cycles, parts,
+            "{}: expected the frame's cycles as the sum of the parts",
+            row.scene
+        );
         if row.evaluations.is_some() {
             let drawn = scene::draw(scene, &Changes::default(), render::on_model);
             let drawn = drawn.expect("a scene").expect("a picture");
@@ -420,7 +426,7 @@ fn the_committed_pictures_of_fields_hold() {
         ];
         assert!(
             found.iter().zip(bounds).all(|(&found, most)| found <= most),
-            "{what}: {found:?}, at most {bounds:?}"
+            "{what}: {found:?}, expected at most {bounds:?}"
         );
         for (name, committed, now) in [
             ("iou", Some(row.iou), Some(now.iou)),

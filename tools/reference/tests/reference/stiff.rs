@@ -17,7 +17,11 @@ fn every_case_has_its_expected_outcome_and_its_row() {
     );
     let committed: Vec<Row> = read_csv(&workspace::path("docs/report/stiff.csv")).expect("a table");
     assert_eq!(errors(&cases), committed, "run `cargo xtask report stiff`");
-    assert!(cases.len() >= 200, "{} cases: expected at least 200", cases.len());
+    assert!(
+        cases.len() >= 200,
+        "{} cases: expected at least 200",
+        cases.len()
+    );
 
     let subjects = catalogue::read(&workspace::path("tools/reference/stiff")).expect("readable");
     let cases = subjects.iter().flat_map(|subject| &subject.cases);

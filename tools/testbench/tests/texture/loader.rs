@@ -123,7 +123,10 @@ impl Bench {
         let begin = self.module.cycles();
         loop {
             let clocks = self.module.cycles() - begin;
-            assert!(clocks < 20_000, "the loading of texture {number} does not end");
+            assert!(
+                clocks < 20_000,
+                "the loading of texture {number} does not end"
+            );
             self.module.set(self.start, u64::from(clocks == 0));
             self.settle();
             let value = |port| self.module.value(port);
@@ -140,7 +143,10 @@ impl Bench {
             let is_done = self.module.is_high(self.done);
             self.clock();
             if is_done {
-                assert!(self.queue.is_empty(), "requested words that the loader did not take");
+                assert!(
+                    self.queue.is_empty(),
+                    "requested words that the loader did not take"
+                );
                 return Loaded {
                     sampler: self.module.read_record("sampler"),
                     levels,
@@ -260,7 +266,10 @@ fn a_load_takes_twice_the_latency_and_a_clock_per_colour() {
             let colours = format.colours() as u64;
             let words = if colours > 0 { latency + 2 } else { 0 };
             let most = 2 * latency + 22 + words + colours;
-            assert!(clocks <= most, "{format:?}: {clocks} clocks: expected at most {most}");
+            assert!(
+                clocks <= most,
+                "{format:?}: {clocks} clocks: expected at most {most}"
+            );
         }
     }
 }

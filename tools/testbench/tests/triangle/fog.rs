@@ -11,7 +11,7 @@ struct Group {
     line: u64,
     mask: u64,
     codes: [u32; 8],
-        /// RGB565 channels with fraction bits, 8 bits each.
+    /// RGB565 channels with fraction bits, 8 bits each.
     colours: [[u8; 3]; 8],
     is_added: bool,
 }

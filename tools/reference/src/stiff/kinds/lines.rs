@@ -26,7 +26,9 @@ pub fn kinds() -> Vec<Kind> {
             let drawn = all
                 .filter(|&place| !pixels([place; 2], [0, 640]).is_empty())
                 .count();
-            Ok(Outcome::exact(format!("{drawn} of the segments have pixels")))
+            Ok(Outcome::exact(format!(
+                "{drawn} of the segments have pixels"
+            )))
         }),
     ]
 }

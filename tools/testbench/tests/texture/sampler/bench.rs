@@ -242,7 +242,10 @@ impl Bench {
             assert!(self.clock(memory).is_none(), "a step after the last quad");
         }
         assert!(self.module.is_high(self.ports.idle));
-        assert!(self.asked.is_empty(), "requested words that the sampler did not take");
+        assert!(
+            self.asked.is_empty(),
+            "requested words that the sampler did not take"
+        );
     }
 
     fn clock(&mut self, memory: &Memory) -> Option<Step> {

@@ -18,7 +18,7 @@ pub struct Row {
     pub bytes: u32,
     /// Number of ways of each set.
     pub ways: u32,
-        /// Number of covered pixels.
+    /// Number of covered pixels.
     pub pixels: u64,
     /// Number of blocks of 32 bytes that are loaded.
     pub misses: u64,
