@@ -1,4 +1,4 @@
-//! A crate that turns, with its texture; it stands while button 0 is down.
+//! A rotating textured crate, which stops while button 0 is held.
 #![cfg_attr(target_arch = "riscv32", no_std, no_main)]
 #![deny(unsafe_code)]
 
@@ -15,9 +15,9 @@ const PLACE: (Q32_32, Turns, Turns) = (
     Turns::from_degrees(Q32_32::lit("30")),
     Turns::from_degrees(Q32_32::lit("65")),
 );
-/// Size of the cube in edge lengths of the mesh.
+/// Scale of the mesh.
 const SIZE: Q8_24 = Q8_24::lit("1.3");
-/// A turn takes six seconds.
+/// One turn in six seconds.
 const TURNS_A_SECOND: Q32_32 = Q32_32::lit("0.1666666667");
 
 struct Cube {

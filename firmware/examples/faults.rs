@@ -1,5 +1,5 @@
-//! Faults on purpose, to see what a board says of them: switch 0 panics, 1 loops for ever, 2 recurses for ever, 3 describes a faulty
-//! picture, 4 executes an illegal instruction. After the message, Enter on the console restarts the program.
+//! Deliberate faults, which show the messages of a board: switch 0 causes a panic, 1 an endless loop, 2 an endless recursion, 3 an invalid
+//! picture, 4 an illegal instruction. After the message, Enter on the console restarts the program.
 #![cfg_attr(target_arch = "riscv32", no_std, no_main)]
 
 use core::hint::black_box;
@@ -20,11 +20,11 @@ const FAULTS: [&str; 5] = [
 
 #[derive(Default)]
 struct Faults {
-    /// Whether the picture is faulty.
+    /// Whether the next picture is to be invalid.
     is_faulty: bool,
 }
 
-/// Recurses for ever; the argument keeps the compiler from making it a loop.
+/// Recurses endlessly. The argument prevents the compiler from replacing the recursion by a loop.
 #[expect(unconditional_recursion, reason = "a fault on purpose")]
 fn recurse(depth: u64) -> u64 {
     let kept = black_box([depth; 8]);
@@ -52,7 +52,7 @@ impl Program for Faults {
 
     fn draw<'p>(&'p self, _: &mut Picture<'p>) -> Result<(), PictureError> {
         if self.is_faulty {
-            // A size of 0 has no model matrix.
+            // A scale of 0 is not a valid model matrix.
             Matrix::scale([Q8_24::ZERO; 3])?;
         }
         Ok(())

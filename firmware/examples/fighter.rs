@@ -1,5 +1,5 @@
-//! A game: gates come towards the ship; steer through them with the buttons. Each gate is a point, the third crash ends the game, and
-//! button up starts it again.
+//! A game: gates approach the ship, and the buttons steer it through them. Each gate scores a point. The third crash ends the game, and
+//! button up restarts it.
 #![cfg_attr(target_arch = "riscv32", no_std, no_main)]
 #![deny(unsafe_code)]
 
@@ -11,16 +11,16 @@ use glint_program::graphics::pixelcolor::{Rgb565, RgbColor};
 use glint_program::lines::Lines;
 use glint_program::{Board, Button, Canvas, Picture, PictureError, Program};
 
-/// One unit of space in Q5.11.
+/// 1.0 in Q5.11.
 const ONE: i32 = 1 << 11;
-/// Gates in flight, and their distance.
+/// Number of gates, and the distance between two of them.
 const GATES: usize = 4;
 const APART: i32 = 3 * ONE;
-/// The z of the ship, its largest distance from the middle, and half of the side of a gate.
+/// The z coordinate of the ship, the largest magnitude of its x and y coordinates, and half the side of a gate.
 const SHIP: i32 = 3 * ONE;
 const REACH: i32 = 2 * ONE;
 const GATE: i32 = ONE;
-/// What a button does to the ship: axis and sign.
+/// The axis and the direction in which each button moves the ship.
 const MOVES: [(Button, usize, i32); 4] = [
     (Button::Right, 0, 1),
     (Button::Left, 0, -1),
@@ -38,7 +38,7 @@ const VIEWING: Viewing = Viewing {
 
 struct Fighter {
     ship: [i32; 2],
-    /// Middle of each gate.
+    /// The centre of each gate.
     gates: [[i32; 3]; GATES],
     lines: Lines<128>,
     score: u64,
@@ -55,7 +55,7 @@ impl Fighter {
         (self.random >> 8) as i32 % (2 * limit + 1) - limit
     }
 
-    /// Adds a closed line through `corners`.
+    /// Adds the closed polygon with these `corners`.
     fn outline<const N: usize>(&mut self, corners: [[i32; 3]; N]) {
         // The game keeps positions in the range of Q5.11.
         let point = |corner: [i32; 3]| corner.map(|x| Q5_11::from_bits(x as i16));
@@ -65,7 +65,7 @@ impl Fighter {
         }
     }
 
-    /// Writes gates and ship as lines.
+    /// Replaces the lines by those of the gates and of the ship.
     fn show(&mut self) {
         self.lines.clear();
         for [x, y, z] in self.gates {

@@ -1,5 +1,5 @@
-//! A flight through the middle of a Menger sponge, again and again. The view turns with the motion sensor, or without one by the buttons
-//! left and right; up and down change the speed.
+//! A repeated flight through the centre of a Menger sponge. The motion sensor turns the view; without a sensor, the buttons left and right
+//! do. The buttons up and down change the speed.
 #![cfg_attr(target_arch = "riscv32", no_std, no_main)]
 #![deny(unsafe_code)]
 
@@ -12,16 +12,16 @@ use glint_program::core::quality::Quality;
 use glint_program::scene::Sphere;
 use glint_program::{Board, Button, Picture, PictureError, Program};
 
-/// The flight leads along the y axis, from this distance before the middle to the same distance behind it.
+/// The flight follows the y axis from −`END` to `END`.
 const END: Q32_32 = Q32_32::lit("1.8");
-/// Largest speed in world units a second, and the step of a button.
+/// Largest speed in world units per second, and the change of the speed by one press of a button.
 const FASTEST: Q32_32 = Q32_32::lit("1.5");
 const FASTER: Q32_32 = Q32_32::lit("0.1");
 
 struct Flight {
     field: Field,
     place: Q32_32,
-    /// Direction of the view without a sensor, in the horizontal plane.
+    /// Direction of view in the horizontal plane, used without a sensor.
     yaw: Turns,
     speed: Q32_32,
     view: View,
@@ -47,7 +47,7 @@ impl Program for Flight {
     }
 
     fn update(&mut self, board: &mut Board) {
-        // An eighth of a turn a second.
+        // An eighth of a turn per second.
         let turned =
             Turns((u128::from(Turns::QUARTER.0) * board.step().as_micros() / 2_000_000) as u32);
         if board.is_held(Button::Right) {
@@ -62,7 +62,7 @@ impl Program for Flight {
         if board.is_pressed(Button::Down) {
             self.speed = (self.speed - FASTER).max(Q32_32::ZERO);
         }
-        // After a pause the flight continues where it was.
+        // Limits the step, so that a pause does not move the camera far.
         let seconds = Q32_32::from_num(board.step().as_micros().min(100_000) as u32) / 1_000_000;
         self.place += self.speed * seconds;
         if self.place > END {
@@ -82,9 +82,9 @@ impl Program for Flight {
 }
 
 impl Flight {
-    /// Turns the camera to the sensor's direction, or to that of the buttons.
+    /// Sets the direction of view from the sensor or, without a sensor, from the buttons.
     fn look(&mut self, board: &Board) {
-        // Off the middle, so that walls are on both sides at unequal distances.
+        // Not on the axis, so that the walls on both sides are at unequal distances.
         let eye = [Q32_32::lit("0.07"), self.place, Q32_32::lit("0.04")];
         let view = match board.motion() {
             Some(motion) => motion.view(eye),

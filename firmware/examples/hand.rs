@@ -1,5 +1,5 @@
-//! A torus that a hand in front of the image sensor turns: left and right, up and down, nearer and farther. Without a hand it turns by
-//! itself.
+//! A torus that a hand in front of the image sensor rotates and moves: left and right, up and down, nearer and farther. Without a hand the
+//! torus rotates at a constant rate.
 #![cfg_attr(target_arch = "riscv32", no_std, no_main)]
 #![deny(unsafe_code)]
 
@@ -13,10 +13,10 @@ use glint_program::graphics::mono_font::ascii::FONT_9X18;
 use glint_program::graphics::pixelcolor::{Rgb565, RgbColor};
 use glint_program::{Board, Canvas, Hand, Picture, PictureError, Program};
 
-/// The camera without a hand: distance, and angle from the z axis.
+/// The camera without a hand: distance from the origin, and angle from the z axis.
 const DISTANCE: Q32_32 = Q32_32::lit("2.2");
 const POLAR: Turns = Turns::from_degrees(Q32_32::lit("60"));
-/// Size of the torus in sizes of the mesh.
+/// Scale of the mesh.
 const SIZE: Q8_24 = Q8_24::lit("2");
 const TURNS_A_SECOND: Q32_32 = Q32_32::lit("0.1");
 

@@ -1,4 +1,4 @@
-//! A bench of a program's own code: the clock cycles of three square roots on the soft core, as bars and on the serial line.
+//! A benchmark of code in a program: the clock cycles of three square root functions on the soft core, as bars and on the serial line.
 #![cfg_attr(target_arch = "riscv32", no_std, no_main)]
 #![deny(unsafe_code)]
 
@@ -13,7 +13,7 @@ use glint_program::graphics::pixelcolor::{Rgb565, RgbColor};
 use glint_program::graphics::primitives::{Primitive, PrimitiveStyle, Rectangle};
 use glint_program::{Board, Canvas, Picture, PictureError, Program, cycles};
 
-/// A kernel: its name, and its function.
+/// Name and function of a kernel, the measured code.
 type Kernel = (&'static str, fn(u32) -> u32);
 
 const KERNELS: [Kernel; 3] = [
@@ -21,7 +21,7 @@ const KERNELS: [Kernel; 3] = [
     ("digit by digit", digit_by_digit),
     ("newton", newton),
 ];
-/// Calls of a kernel in a measurement.
+/// Number of calls of a kernel in one measurement.
 const CALLS: u32 = 64;
 
 fn digit_by_digit(mut rest: u32) -> u32 {
@@ -54,7 +54,7 @@ fn newton(square: u32) -> u32 {
 
 #[derive(Default)]
 struct Bench {
-    /// Cycles of a call, of each kernel.
+    /// Clock cycles per call of each kernel.
     cycles: [u64; KERNELS.len()],
 }
 
@@ -64,7 +64,7 @@ impl Program for Bench {
     }
 
     fn update(&mut self, board: &mut Board) {
-        // Once a second.
+        // Measures once per second.
         if !board.pictures().is_multiple_of(60) {
             return;
         }

@@ -1,5 +1,5 @@
-//! An oscilloscope of the accelerometer: three traces of the last samples. The buttons up and down change the range, left holds the
-//! picture.
+//! An oscilloscope for the accelerometer: three traces of the latest samples. The buttons up and down change the range, and left freezes
+//! the traces or releases them.
 #![cfg_attr(target_arch = "riscv32", no_std, no_main)]
 #![deny(unsafe_code)]
 
@@ -12,14 +12,14 @@ use glint_program::graphics::pixelcolor::{Rgb565, RgbColor};
 use glint_program::graphics::primitives::{Line, Polyline, Primitive, PrimitiveStyle};
 use glint_program::{Board, Button, Canvas, Picture, PictureError, Program};
 
-/// Samples of a trace.
+/// Number of samples in a trace.
 const LENGTH: usize = 560;
 /// Left edge of the traces, in pixels.
 const LEFT: i32 = 60;
-/// Middle and half of the height of the traces, in pixels.
+/// Row of the value 0, and half the height of the traces, in pixels.
 const MIDDLE: i32 = 180;
 const HALF: i32 = 150;
-/// Counts of the sensor in 1 g.
+/// Sensor counts per g.
 const G: i32 = 4096;
 const TRACES: [(&str, Rgb565); 3] = [
     ("x", Rgb565::new(31, 20, 8)),
@@ -28,10 +28,10 @@ const TRACES: [(&str, Rgb565); 3] = [
 ];
 
 struct Scope {
-    /// The last samples along each axis, a ring that begins at `next`.
+    /// The latest samples of each axis: a ring buffer, whose oldest sample is at `next`.
     traces: [[i16; LENGTH]; 3],
     next: usize,
-    /// Range of the picture in g, from −range to range.
+    /// The traces show accelerations from −`range` to `range`, in g.
     range: i32,
     is_held: bool,
     has_sensor: bool,

@@ -1,4 +1,5 @@
-//! A sun with six planets, one of which has a moon. The buttons up and down speed the time up and slow it down; left turns it around.
+//! A sun with six planets, one of which has a moon. The buttons up and down change the speed of the animation, and left reverses its
+//! direction.
 #![cfg_attr(target_arch = "riscv32", no_std, no_main)]
 #![deny(unsafe_code)]
 
@@ -13,7 +14,7 @@ use glint_program::graphics::mono_font::ascii::FONT_10X20;
 use glint_program::graphics::pixelcolor::{Rgb565 as Colour, RgbColor};
 use glint_program::{Board, Button, Canvas, Picture, PictureError, Program};
 
-/// Radius of an orbit, size of the planet, turns a second, and colour.
+/// Radius of the orbit, diameter, turns per second, and colour.
 type Planet = (Q8_24, Q8_24, Q32_32, &'static str);
 
 const fn planet(orbit: &str, size: &str, turns: &str, colour: &'static str) -> Planet {
@@ -33,18 +34,18 @@ const PLANETS: [Planet; 6] = [
     planet("2.05", "0.60", "0.05", "d0a070"),
     planet("2.60", "0.48", "0.03", "e0d0a0"),
 ];
-/// The planet with the moon.
+/// Index of the planet with the moon.
 const EARTH: usize = 2;
 
 struct Solar {
     sphere: Mesh<'static>,
-    /// The angle of each planet, and of the moon at the end.
+    /// The angle of each planet, then the angle of the moon.
     angles: [Turns; PLANETS.len() + 1],
-    /// Speed in eighths.
+    /// Speed of the animation in units of 1/8.
     speed: i64,
 }
 
-/// A sphere of this size at an angle of an orbit.
+/// The model matrix of a sphere of this size at this angle of an orbit.
 fn placed(size: Q8_24, orbit: Q8_24, angle: Turns) -> Result<Matrix, MatrixError> {
     let zero = Q8_24::ZERO;
     Matrix::scale([size; 3])?
@@ -56,7 +57,7 @@ impl Program for Solar {
     fn start(board: &mut Board) -> Self {
         Self {
             sphere: board.shape(Shape::Sphere),
-            // Apart by the golden angle.
+            // Multiples of the golden angle spread the planets around the sun.
             angles: core::array::from_fn(|i| Turns(0x61c8_8647_u32.wrapping_mul(i as u32))),
             speed: 8,
         }
@@ -93,7 +94,7 @@ impl Program for Solar {
         .with_field_of_view(Turns::from_degrees(Q32_32::lit("76")))?;
         picture.appearance.background = Some(Background::Colour([4, 4, 12]));
         picture.appearance.ambient = Some([40; 3]);
-        // A light has a direction, not a place: that of the sun comes from above.
+        // A light has a direction, and no position, so it cannot come from the sun.
         let up = [Q32_32::ZERO, Q32_32::lit("0.5"), Q32_32::ONE];
         if let Ok(light) = Light::new(up, [0xff; 3]) {
             let _ = picture.appearance.lights.push(light);
