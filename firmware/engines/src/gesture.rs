@@ -1,4 +1,4 @@
-//! Settings of the gesture engine for gesture control, and set-up of the image sensor over the engine's I2C wires.
+//! Settings of the gesture engine for gesture control, and set-up of the image sensor over the engine's I2C bus.
 
 use embedded_hal::delay::DelayNs;
 use glint_core::gesture::{EngineSetting, Region, Statistics, Window};
@@ -10,7 +10,7 @@ use glint_i2c::{NoAcknowledge, TwoWires};
 /// Reason why the image sensor cannot be set up.
 pub type SetUpError = Error<NoAcknowledge>;
 
-/// Longest time in ms after the end of a reset in which a chip may not answer: that of the OV5640.
+/// Time in ms from the end of a reset until every supported chip answers. The OV5640 takes the longest.
 const RESET_TIME: u32 = 20;
 
 type Sensor<'a> = ImageSensor<TwoWires<&'a mut GestureEngine, Waiting>>;
@@ -42,7 +42,8 @@ pub fn start(
     started
 }
 
-/// Whether the image sensor that [`start`] found still has its settings. Takes about 5 ms, or less than 1 ms without a sensor.
+/// Whether the image sensor that [`start`] found still has the settings that `start` wrote. Takes about 5 ms, or less than 1 ms without a
+/// sensor.
 ///
 /// # Errors
 /// The chip does not answer.
@@ -55,7 +56,7 @@ pub fn keeps(
     block_on(sensor(engine, clock).keeps(model, size))
 }
 
-/// Finds an image sensor after the last one has stopped answering. Takes about 2 ms, or less than 1 ms without a sensor.
+/// Looks for an image sensor after the previous one has stopped answering. Takes about 2 ms, or less than 1 ms without a sensor.
 ///
 /// # Errors
 /// No known chip answers.
@@ -69,13 +70,13 @@ pub fn set_windows(engine: &mut GestureEngine, windows: [Window; 2]) {
     engine.set_windows(windows.map(|window| [window.lower, window.upper]));
 }
 
-/// Sets the region in which the engine counts pixels, and its minimum run.
+/// Sets the region in which the engine counts pixels, and the minimum length of a counted run.
 pub fn set_gate(engine: &mut GestureEngine, setting: &EngineSetting) {
     let Region { first, last } = setting.region;
     engine.set_gate([first, last], setting.least_run);
 }
 
-/// The statistics of the last whole frame; `None` if the engine replaced them during the reading.
+/// The statistics of the last whole frame; `None` if the engine replaced them during the read.
 #[must_use]
 pub fn statistics(engine: &GestureEngine) -> Option<Statistics> {
     let counts = engine.counts()?;

@@ -213,13 +213,13 @@ pub fn set_field(
     Ok(())
 }
 
-/// Half the sides of a solid whose rays are drawn by exits (docs/raymarch-exits.md).
+/// Half the side lengths of a solid for rays by exits (docs/raymarch-exits.md).
 fn half(exits: &Exits) -> [u32; 3] {
     let solid = exits.solid.unwrap_or_default();
     solid.half().map(|half| half as u32)
 }
 
-/// The register with the rule of the solid, and the prisms around the eyes.
+/// The value of the register with the rule of the solid, and the empty prisms around the eyes.
 fn prisms(exits: &Exits) -> (driver::Exits, [Prism; 2]) {
     let solid = exits.solid.unwrap_or_default();
     let rule = match solid.rule {
@@ -258,7 +258,7 @@ fn prisms(exits: &Exits) -> (driver::Exits, [Prism; 2]) {
     (register, [prism(left), prism(right)])
 }
 
-/// The solid with its spheres. Also writes their constants.
+/// Returns the solid with its spheres, and writes the constants of the spheres to registers.
 fn with_spheres(
     raymarcher: &Raymarcher,
     setup: &FieldSetup,
@@ -282,9 +282,9 @@ fn with_spheres(
         .with_last_light(lights.count.saturating_sub(1) as u8)
 }
 
-/// The solid with the numbers of the cones in which the eyes see the spheres. Also writes the cones.
-/// Without spheres, this is one cone without pixels: by exits, the gateware intersects rays with spheres in
-/// every frame, and it would use the cones of the previous frame.
+/// Returns the solid with the number of cones in which each eye sees the spheres, and writes these cones to registers. Without spheres,
+/// writes one cone without pixels: in a field of rays by exits, the gateware always intersects rays with cones, and would otherwise use
+/// those of the previous frame.
 fn with_cones(raymarcher: &Raymarcher, exits: &Exits, solid: Solid, stereo: bool) -> Solid {
     if !raymarcher.capabilities().round {
         return solid;
@@ -311,7 +311,7 @@ fn with_cones(raymarcher: &Raymarcher, exits: &Exits, solid: Solid, stereo: bool
         .with_last_cone_right(last[1])
 }
 
-/// Writes the rays to the first light, and the colours of faces in its shadow.
+/// Writes the constants of the shadow rays to the first light, and the colours of faces in shadow.
 fn set_shadow(raymarcher: &Raymarcher, exits: &Exits, palette: &Palette) {
     let Some(sun) = &exits.sun else {
         return;
@@ -370,7 +370,7 @@ fn set_spheres(raymarcher: &Raymarcher, spheres: &FixedSpheres, blend: &Blend, l
     }
 }
 
-/// Writes whether there is a solid cone, and the constants of the light on it.
+/// Writes whether there is a solid cone, and the constants that light it.
 fn set_cone_light(raymarcher: &Raymarcher, cone: Option<&FixedCone>) {
     let Some(cone) = cone else {
         raymarcher.set_constant(39, 0);
@@ -382,7 +382,7 @@ fn set_cone_light(raymarcher: &Raymarcher, cone: Option<&FixedCone>) {
     raymarcher.set_constant(53, along as u32 & 0xFF_FFFF);
 }
 
-/// The kind of the flat field as a register value, and the levels of a sponge, the first level in bit 0.
+/// The kind of the flat field as a register value, and a mask of the levels of a sponge, the first level in bit 0.
 fn kind(setup: &FieldSetup) -> (Kind, u8) {
     match &setup.form {
         Form::Exits(exits) => match exits.solid.map(|solid| solid.rule) {

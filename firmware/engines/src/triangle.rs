@@ -12,11 +12,11 @@ use glint_model::{Fog, MeshLight, MeshSetup, Shading, Sky};
 /// A geometry pass of a mesh.
 #[derive(Clone, Copy, Debug)]
 pub struct MeshPass<'a> {
-    /// The mesh.
+    /// The mesh to draw.
     pub mesh: &'a Mesh<'a>,
-    /// The part of the picture that is drawn.
+    /// The part of the picture to draw.
     pub window: Window,
-    /// The frame constants of the mesh, for this window.
+    /// The frame constants of the mesh for `window`.
     pub frame: &'a MeshSetup,
     /// Colours of the light on the mesh; `None` for white light at the camera, without ambient light. The direction of the light is in
     /// `frame`. With smooth shading and without `cull`, ambient light is not allowed.
@@ -29,8 +29,8 @@ pub struct MeshPass<'a> {
     pub colour: Option<Rgb565>,
     /// The textures of the mesh, if they are drawn; only under flat shading.
     pub textures: Option<Textures<'a>>,
-    /// Empty memory for the output of the pass; `None` to append to the output of the previous pass, whose picture size and light colours
-    /// must be equal.
+    /// Empty memory for the output of the pass. `None` appends to the output of the previous pass, which must have the same picture size
+    /// and light colours.
     pub lists: Option<Lists>,
 }
 
@@ -71,7 +71,7 @@ impl MeshPass<'_> {
     }
 }
 
-/// The sky of a raster pass; `is_first` if textures are blended with it.
+/// The sky of a raster pass; `is_first` if the pass blends textures with the sky.
 #[must_use]
 pub const fn sky(sky: &Sky, is_first: bool) -> triangle::Sky {
     triangle::Sky {
@@ -85,7 +85,7 @@ pub const fn sky(sky: &Sky, is_first: bool) -> triangle::Sky {
     }
 }
 
-/// The averages of a raster pass of a frame, which draws this window; `None` for one sample a pixel.
+/// The averaging of samples in a raster pass that draws this window of a frame; `None` for one sample per pixel.
 #[must_use]
 pub fn average(samples: Samples, window: Window) -> Option<Average> {
     let quarter = window.quarter.map(|quarter| Quarter {

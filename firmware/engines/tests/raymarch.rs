@@ -51,7 +51,7 @@ fn what_is_not_built_is_refused_and_nothing_is_written() {
     }
 }
 
-/// By exits, the gateware intersects rays with spheres in every frame, and it keeps the cones of the
+/// In a field of rays by exits, the gateware always intersects rays with cones, so a frame without spheres must replace the cones of the
 /// previous frame.
 #[test]
 fn a_frame_without_spheres_has_a_cone_that_no_pixel_sees() {

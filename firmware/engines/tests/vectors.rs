@@ -1,5 +1,5 @@
-//! The vectors of a field for the gateware's package: the driver's writes for a sponge, and its picture by the model, from which
-//! simulations outside of this project are checked.
+//! Test vectors for the gateware's package, which check simulations outside of this project: the driver's register writes for a sponge, and
+//! the picture that the model draws of it.
 
 use std::fmt::Write;
 
@@ -23,10 +23,10 @@ const FILE: &str = concat!(
 const CAPS: u32 = 0x3_0242;
 const SIZE: (u32, u32) = (320, 180);
 const CLEAR: u16 = 0x1234;
-/// Largest number of values in a line of the file.
+/// Largest number of values in a line of [`FILE`].
 const PER_LINE: usize = 8;
 
-/// Returns the text of the file.
+/// Returns the contents of [`FILE`].
 fn text() -> String {
     // SAFETY: a model on the bus answers all accesses, so no device is affected.
     let registers = unsafe { Peripherals::steal() }.raymarch;
@@ -61,7 +61,7 @@ fn text() -> String {
          expect raymarch+{caps:x} ffffffff {CAPS:x}\n",
         SIZE.0, SIZE.1
     );
-    // Successive writes of one register are one line.
+    // Successive writes to one register share a line.
     let writes = std::mem::take(&mut block.borrow_mut().writes);
     for writes in writes.chunk_by(|a, b| a.0 == b.0) {
         for writes in writes.chunks(PER_LINE) {
@@ -96,7 +96,8 @@ fn text() -> String {
     text
 }
 
-/// The file has the driver's writes and the model's picture. With the environment variable `GLINT_UPDATE`, the file is replaced.
+/// [`FILE`] contains the driver's register writes and the model's picture. With the environment variable `GLINT_UPDATE`, this test replaces
+/// it.
 #[test]
 fn vectors_of_the_package() {
     let text = text();

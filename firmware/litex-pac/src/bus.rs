@@ -1,4 +1,4 @@
-//! The bus of the registers: the CPU's bus on the board, a model on a host.
+//! Access to registers over the CPU's bus on the board, or over a model of the bus on a host.
 
 #[cfg(target_os = "none")]
 pub(crate) use board::{read, write};
@@ -46,7 +46,7 @@ mod host {
         fn write(&mut self, address: usize, value: u32);
     }
 
-    /// An empty bus: every read returns 0, as in the address window of an absent block.
+    /// A bus without devices: every read returns 0, as for a block that the gateware lacks.
     struct Empty;
 
     impl Bus for Empty {
@@ -61,7 +61,7 @@ mod host {
         static BUS: RefCell<Box<dyn Bus>> = RefCell::new(Box::new(Empty));
     }
 
-    /// Connects the model `bus` to the registers, for this thread.
+    /// Uses `bus` as the bus of all registers in this thread.
     pub fn connect(bus: impl Bus + 'static) {
         BUS.replace(Box::new(bus));
     }

@@ -50,8 +50,8 @@ pub fn implementation() -> u32 {
     implementation
 }
 
-/// Empties the data cache, so that reads see memory written by other bus masters. The cache writes through, so memory already
-/// holds all data written by the CPU. With the feature `uncached` there is none.
+/// Invalidates the data cache, so that reads see memory written by other bus masters. The cache writes through, so memory already holds all
+/// data written by the CPU. Does nothing with the feature `uncached`.
 #[inline]
 pub fn flush_data_cache() {
     compiler_fence(Ordering::SeqCst);
@@ -63,7 +63,7 @@ pub fn flush_data_cache() {
     compiler_fence(Ordering::SeqCst);
 }
 
-/// Empties the instruction cache, so that code written as data is fetched from memory.
+/// Invalidates the instruction cache, so that the CPU fetches code that was written as data.
 #[inline]
 pub fn flush_instruction_cache() {
     // SAFETY: these are `fence.i` and as many `nop`s as the pipeline may have fetched before it; they change no memory.
@@ -89,7 +89,7 @@ pub fn cycles() -> u64 {
     }
     loop {
         let (high, low, again): (u32, u32, u32);
-        // SAFETY: reads counters that a variant without `uptime` has; no side effects.
+        // SAFETY: reads counters of the CPU, which exist without the feature `uptime`; no side effects.
         unsafe {
             asm!(
                 "csrr {high}, mcycleh",
@@ -107,7 +107,7 @@ pub fn cycles() -> u64 {
     }
 }
 
-/// The low word of [`cycles`]: for intervals below 2^32 cycles (52 s at 81.25 MHz); faster to read.
+/// The low word of [`cycles`], which is faster to read and suffices for intervals below 2^32 cycles (52 s at 81.25 MHz).
 #[inline]
 #[must_use]
 pub fn cycles_low() -> u32 {
@@ -115,15 +115,15 @@ pub fn cycles_low() -> u32 {
         return uptime().read_low();
     }
     let cycles;
-    // SAFETY: reads a counter that a variant without `uptime` has; no side effects.
+    // SAFETY: reads a counter of the CPU, which exists without the feature `uptime`; no side effects.
     unsafe { asm!("csrr {}, mcycle", out(reg) cycles, options(nomem, nostack)) };
     cycles
 }
 
-/// The counter of `timer0`, latched. An interrupt may latch it once more, which makes the value a later one.
+/// The counter of `timer0`. If an interrupt latches the counter between the latch and the read, the value is the later one.
 #[inline]
 fn uptime() -> WideRegister<ReadOnly> {
-    // SAFETY: all that accesses these registers latches the counter and then reads it.
+    // SAFETY: all code that accesses these registers latches the counter and then reads it.
     let timer = unsafe { Timer0::steal() };
     timer.uptime_latch().write(true);
     timer.uptime_cycles()

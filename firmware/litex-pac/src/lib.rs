@@ -60,7 +60,7 @@ pub const EMULATED: u32 = u32::from_be_bytes(*b"EMUL");
 static TAKEN: Mutex<Cell<bool>> = Mutex::new(Cell::new(false));
 
 impl Peripherals {
-    /// Every peripheral at the first call, `None` afterwards.
+    /// All peripherals at the first call, `None` at later calls.
     #[must_use]
     pub fn take() -> Option<Self> {
         let taken = critical_section::with(|token| TAKEN.borrow(token).replace(true));

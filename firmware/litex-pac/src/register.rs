@@ -112,7 +112,7 @@ impl<A> WideRegister<A> {
         }
     }
 
-    /// Reads both words, again if the high word has changed, so that the value of a counter is consistent.
+    /// Reads both words, and repeats the reads until the high word is unchanged, so that the value of a counter is consistent.
     #[inline]
     #[must_use]
     pub fn read(&self) -> u64 {

@@ -1,4 +1,4 @@
-//! Variants of the CPU, VexRiscv, and what the firmware has to do without in each of them.
+//! Variants of the CPU, VexRiscv, and the features that the firmware must not use in each variant.
 
 /// A variant that a gateware may have: `cargo xtask gateware --cpu NAME`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -9,7 +9,7 @@ pub struct Variant {
     pub features: &'static [&'static str],
 }
 
-/// All variants that execute the firmware's instructions, rv32im; the default one first.
+/// All variants that execute the firmware's instruction set, rv32im; the default variant first.
 pub const VARIANTS: [Variant; 7] = [
     Variant::new("full", &[]),
     Variant::new("lite", &["uptime", "uncached"]),
