@@ -1,8 +1,9 @@
 //! The raymarcher: frames of a distance field (docs/formats/raymarch.md, "Distance fields").
 //!
-//! A ray is parametrised by depth: its direction D is not scaled. In most fields, rays go *by exits*: each step takes a ray to the exit of
-//! a whole empty prism ([`exits`]). In smooth and bent unions, rays *march*: each step is a distance ([`Marching::march`]). For both kinds,
-//! [`FieldSetup`] has the constants of a frame, [`Tracer::trace`] finds the end of a pixel's ray, and [`paint()`] computes its colour.
+//! A ray is parametrised by depth: its direction D is not normalised. Most fields use rays *by exits*: each step advances a ray to the exit
+//! of a whole empty prism ([`exits`]). Smooth and bent unions use *marching* rays: each step advances a ray by a distance
+//! ([`Marching::march`]). For both kinds of rays, [`FieldSetup`] has the constants of a frame, [`Tracer::trace`] finds the end of a pixel's
+//! ray, and [`paint()`] computes the pixel's colour.
 
 mod blend;
 mod directions;

@@ -1,20 +1,21 @@
 //! Unions of a flat solid (plane faces) and a round solid (spheres), sharp or with a fillet.
 //!
-//! For a fillet of two surfaces with the distances a and b, the distance is their quadratic smooth minimum (I. Quilez,
-//! "smooth minimum"): min(a, b) − h²/(4k) with h = max(k − |a − b|, 0). Its gradient is the weighted mean of both
-//! gradients, with the weight h/(2k) for the larger distance. The blended distance therefore changes no faster than
-//! a or b, and the same weight blends the colours of the two surfaces.
+//! For a fillet of two surfaces with the distances a and b, the distance is their quadratic smooth minimum (I. Quilez, "smooth minimum"):
+//! min(a, b) − h²/(4k) with h = max(k − |a − b|, 0). The gradient of the minimum is the weighted mean of the gradients of a and b, with the
+//! weight h/(2k) for the larger distance. The blended distance therefore changes no faster than a or b. The same weight blends the colours
+//! of the two surfaces.
 
 use glint_core::field::{FieldSample, FixedSpheres, Surface};
 
-/// Spheres in union with a flat solid.
+/// Spheres, and how they are united with a flat solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Beside {
-    /// The spheres.
+    /// The spheres of the union.
     pub spheres: FixedSpheres,
     /// The fillet between the spheres and the flat solid.
     pub blend: Blend,
-    /// The distance to the flat solid is 2^`bend` times too long, 0 to 6; above 0 in a bent union.
+    /// The distance to the flat solid is multiplied by 2^`bend`, with `bend` from 0 to 6, and is then too long; `bend` is above 0 only in a
+    /// bent union.
     pub bend: u32,
 }
 

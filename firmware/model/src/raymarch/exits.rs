@@ -1,18 +1,18 @@
-//! Rays by exits: each step takes a ray out of a whole empty prism, so hits are exact, without distances and thresholds
-//! (docs/raymarch-exits.md).
+//! Rays by exits: each step advances a ray to the exit of a whole empty prism. Hits are exact, because no distance is compared with a
+//! threshold (docs/raymarch-exits.md).
 //!
-//! The planes of a solid cut each axis into intervals. A field is a rule about the three intervals of a point: whether the point is in the
-//! solid, or which planes bound an empty prism around the point. An *evaluation* moves the ray to the end of this prism. A ray therefore
-//! ends after a few evaluations, and its end is on a plane of the solid, exact up to the rounding of one product.
+//! The planes of a solid cut each axis into intervals. A field is a rule that maps the three intervals of a point to the answer whether the
+//! point is in the solid, or else to the planes that bound an empty prism around the point. An *evaluation* moves the ray to the exit of
+//! this prism. A ray therefore ends after a few evaluations, on a plane of the solid, exactly up to the rounding of one product.
 //!
-//! A ray is o + T·D with the unscaled direction D, so T is a depth. All solids here are symmetric about the origin,
-//! so each axis along which a ray points down is mirrored. All rays then point up, and every exit is at the upper border of an interval.
+//! A ray is o + T·D. The direction D is not normalised, so T is a depth. All solids are symmetric about the origin, so an axis along which
+//! a ray points down can be mirrored. All rays then point up, and every exit is at the upper border of an interval.
 //!
-//! The spheres of a list are tested before the flat solid, by the cones in which an eye sees them. A sphere of a lattice is tested when a
-//! ray is in the box about the sphere.
+//! The spheres of a list are tested before the flat solid, with the cones in which an eye sees these spheres. A sphere of a lattice is
+//! tested when a ray is in the bounding box of the sphere.
 //!
-//! [`Exits`] has the constants of a frame, [`Exits::ray`] makes the ray of a pixel, [`Exits::end`] finds its end, and [`Words`] has the
-//! word lengths.
+//! [`Exits`] has the constants of a frame, [`Exits::ray`] computes the ray of a pixel, [`Exits::end`] finds the end of the ray, and
+//! [`Words`] has the word lengths.
 
 mod code;
 mod cone_words;

@@ -1,4 +1,4 @@
-//! Fog: the share of a surface's colour that the fog hides, as a function of depth.
+//! Fog on a field: the fraction of a surface's colour that the fog replaces, as a function of depth.
 
 use glint_core::feature::{FOG, STEREO};
 use glint_core::fixed::U4_28;
@@ -8,7 +8,7 @@ use super::palette::Palette;
 use super::setup::FieldSetup;
 
 impl FieldOptions {
-    /// Returns the palette of these options with fog; in grey for two eyes.
+    /// Returns the palette of these options, with fog if there is any, and in grey for two eyes.
     pub fn palette_for(&self, setup: &FieldSetup) -> Palette {
         let palette = if FOG.is_built && self.fog != U4_28::ZERO {
             self.palette.with_fog(setup, self.fog)
@@ -28,12 +28,12 @@ impl Palette {
     /// value. The last entry is also used for all larger depths.
     #[must_use]
     pub fn with_fog(self, setup: &FieldSetup, density: U4_28) -> Self {
-        // Selects the smallest depth step with which 256 steps reach a transmittance of e^−8, otherwise the largest step.
+        // Selects the smallest depth step for which 256 steps reach a transmittance of e^−8, or the largest step if none does.
         const ENOUGH: u64 = 8 << 32;
         let unit = fog_of_unit(setup, density);
         let fog_shift = (0..7).find(|shift| unit << (shift + 8) >= ENOUGH);
         let fog_shift = fog_shift.unwrap_or(7);
-        // The first entry is at half a depth step, each further entry one step deeper.
+        // The first entry is for the depth of half a step, and each further entry is one step deeper.
         let half = faded((unit << fog_shift) / 2);
         let whole = product(half, half);
         let mut left = half;
@@ -49,7 +49,7 @@ impl Palette {
     }
 }
 
-/// The number 1 with 62 fraction bits.
+/// 1.0 with 62 fraction bits.
 pub(crate) const FULL: u64 = 1 << 62;
 
 /// The product of two numbers with 62 fraction bits.

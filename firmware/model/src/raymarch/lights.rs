@@ -6,10 +6,10 @@ use glint_core::light::{Lighting, MAX_LIGHTS, Material, Rgb, highlight_share, wh
 
 use super::exits::{Inverse, Words};
 
-/// The colour of [`Material::Normal`] on spheres: in each channel this value, plus [`SLOPE`] times a component of the normal.
+/// Each channel of [`Material::Normal`] on a sphere is this value plus [`SLOPE`] times a component of the normal.
 const MIDDLE: u8 = 130;
 
-/// Change of a channel per unit of the component of the normal that it shows.
+/// Change of a channel per unit of a component of the normal ([`MIDDLE`]).
 const SLOPE: u8 = 95;
 
 /// A directional light.
@@ -26,7 +26,7 @@ pub struct Light {
 pub struct Shine {
     /// The direction halfway between the light and the camera, and the colour of the highlight.
     pub light: Light,
-    /// The steepness of the power, u5.8.
+    /// The steepness of the highlight, which determines the exponent of the power, u5.8.
     pub steepness: u16,
 }
 
@@ -41,22 +41,23 @@ pub struct Lights {
     pub count: usize,
     /// Material colours of the spheres, by sphere number.
     pub materials: [Rgb; MAX_SPHERES],
-    /// Colours of the three components of a normal, if the material's colour depends on it. The gateware takes one clock for each.
+    /// The colour by which each of the three components of a normal is multiplied, if the material's colour depends on the normal. The
+    /// gateware takes one clock for each component.
     pub normals: Option<[Rgb; 3]>,
-    /// The factors of a normal's components x, y and z in `normals`, s1.16: 1 in every valid frame.
+    /// The factors of a normal's components x, y and z for `normals`, s1.16; 1 in every valid frame.
     pub axes: [i32; 3],
     /// The highlight, which takes the gateware one more clock; `None` without a highlight.
     pub highlight: Option<Shine>,
 }
 
 impl Lights {
-    /// The colours of the three components of a normal for [`Material::Normal`], or their luminances for two eyes.
+    /// The value of `normals` for [`Material::Normal`], or its luminances for two eyes.
     pub fn components(is_grey: bool) -> [Rgb; 3] {
         let colours = [[SLOPE, 0, 0], [0, SLOPE, 0], [0, 0, SLOPE]];
         if is_grey { colours.map(grey) } else { colours }
     }
 
-    /// Returns the lights of a scene for spheres of the given material.
+    /// Returns the lights and materials for the spheres of a scene.
     pub fn new(material: Material, lighting: &Lighting) -> Self {
         let mut list = [Light::default(); MAX_LIGHTS];
         for (place, light) in list.iter_mut().zip(&lighting.lights) {
@@ -156,7 +157,7 @@ impl Lights {
     }
 }
 
-/// The luminance of a colour in all channels.
+/// The grey colour with the luminance of a colour.
 fn grey(colour: Rgb) -> Rgb {
     [luminance(colour); 3]
 }
@@ -166,7 +167,7 @@ fn widened(direction: [i16; 3]) -> [i32; 3] {
     direction.map(|x| i32::from(x) << 2)
 }
 
-/// A sum of colours, each times a share, with 8 fraction bits.
+/// A sum of colours, each multiplied by a share, with 8 fraction bits.
 struct Sum([i32; 3]);
 
 impl Sum {
@@ -187,11 +188,11 @@ impl Sum {
     }
 }
 
-/// The length of a normal, in the form by which its scalar products are divided.
+/// The length of a normal, stored as a reciprocal, because scalar products are divided by it.
 struct Length {
     /// 2^(17 + shift) divided by the length, 17 bits.
     inverse: u32,
-    /// The logarithm of the length to the base 2, rounded down; 6 to 21.
+    /// The base-2 logarithm of the length, rounded down; 6 to 21.
     shift: u32,
 }
 

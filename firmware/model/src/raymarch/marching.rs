@@ -1,4 +1,4 @@
-//! The constants of a frame whose rays march by distances.
+//! The constants of a frame that is drawn with marching rays.
 
 use glint_core::camera::View;
 use glint_core::field::{
@@ -20,13 +20,14 @@ pub const MARCH_FRACTION: u32 = 10;
 /// The constants of a frame whose rays march by distances (docs/formats/raymarch.md, "Marching rays"), of a smooth or bent union.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Marching {
-    /// Rays by exits that enter the bounding box about the origin: marching rays have the directions and starts of these rays.
+    /// The constants of rays by exits that enter the bounding box around the origin. Marching rays start at the same points, in the same
+    /// directions.
     pub entry: Exits,
     /// The flat solid of the union.
     pub solid: Solid,
     /// The spheres, and how they are united with `solid`.
     pub beside: Beside,
-    /// Threshold: a ray hits if the distance is below `threshold` + T·2^−`footprint`. In field units, 12 fraction bits, below 2^16.
+    /// A ray hits if the distance is below `threshold` + T·2^−`footprint`. In field units with 12 fraction bits, below 2^16.
     pub threshold: u32,
     /// Exponent of the part of the threshold that grows with T, 7 to 22: the exponent of the options plus the exponent e of D.
     pub footprint: u32,
@@ -94,9 +95,9 @@ impl Marching {
         self.sample(self.entry.eyes[eye].origin).distance < 0
     }
 
-    /// Evaluates the field at a point, s15.12. Returns the distance and the nearest surface; at equal distances of a face and a sphere, the
-    /// face. A coordinate that exceeds the field's format s10.12 saturates: the solid is within this range, so the distance is not too
-    /// large.
+    /// Evaluates the field at a point, s15.12. Returns the distance and the nearest surface. If a face and a sphere are at equal distances,
+    /// returns the face. A coordinate that exceeds the field's format s10.12 saturates. The solid is within this range, so saturation never
+    /// makes the distance too large.
     pub fn sample(&self, point: [i32; 3]) -> FieldSample {
         const MOST: i32 = (1 << (9 + FRACTION)) - 1;
         let point = point.map(|x| x.clamp(!MOST, MOST));
@@ -105,8 +106,8 @@ impl Marching {
     }
 }
 
-/// Half side lengths of the box about both members of a union; `None` for an unbounded member. A fillet extends beyond both members by at
-/// most a quarter of its width.
+/// Half side lengths of the bounding box of both members of a union; `None` for an unbounded member. A fillet extends beyond both members
+/// by at most a quarter of the fillet's width.
 pub(super) fn extent(union: &Union) -> Option<[Q32_32; 3]> {
     let [first, round] = [union.first(), union.spheres()].map(Primitive::placed);
     first

@@ -10,20 +10,19 @@ use glint_core::stereo::Stereo;
 
 use super::palette::Palette;
 
-/// Precision of marching rays, which determines the errors of a picture and the time to draw it.
+/// Precision of marching rays, a trade-off between the errors and the drawing time of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tuning {
-    /// Threshold: a ray hits if the distance is below `threshold` + z·2^−`footprint` at the depth z. In field units, 12 fraction bits,
-    /// below 2^16.
+    /// A ray hits at the depth z if the distance is below `threshold` + z·2^−`footprint`. In field units with 12 fraction bits, below 2^16.
     pub threshold: u32,
-    /// Footprint: the exponent of the part of the threshold that grows with the depth; 7 to 15.
+    /// Exponent of the part of the threshold that grows with the depth, 7 to 15.
     pub footprint: u32,
     /// Step limit, 1 to 1023: a ray ends undecided after this number of evaluations.
     pub cap: u32,
 }
 
 impl Tuning {
-    /// Tuning for a picture quality.
+    /// Returns the precision for a picture quality.
     pub const fn of(quality: Quality) -> Self {
         let Threshold { base, footprint } = quality.preset().threshold;
         Self {
@@ -50,16 +49,16 @@ pub struct FieldOptions {
     pub stereo: Option<Stereo>,
     /// Precision of marching rays.
     pub tuning: Tuning,
-    /// Colours, without fog.
+    /// Colours of the picture before fog is added.
     pub palette: Palette,
-    /// Direction to the first light, s1.14, of length 1; `None` if it casts no shadows.
+    /// Direction to the first light, a unit vector, s1.14; `None` if the light casts no shadows.
     pub sun: Option<[i16; 3]>,
     /// Density of the fog per world unit: transmittance is e^(−density · z) at depth z. 0 is no fog.
     pub fog: U4_28,
 }
 
 impl FieldOptions {
-    /// Default options for a field.
+    /// Returns the default options for a field.
     pub fn of(field: &Field) -> Self {
         Self {
             palette: Palette::of(field, Material::Normal, &Lighting::PLAIN, Background::White),
@@ -67,7 +66,7 @@ impl FieldOptions {
         }
     }
 
-    /// Options for a field, its appearance, a camera, one eye or two, and a picture quality.
+    /// Returns the options for a field with this appearance, camera, number of eyes and picture quality.
     pub fn new(
         field: &Field,
         appearance: &Appearance,

@@ -1,4 +1,4 @@
-//! Colour of a ray's end: a colour of the palette, darkened by the ray's number of steps and blended with the fog.
+//! Colour of a ray's end: a colour of the palette, darkened by the occlusion and blended with the fog.
 
 use glint_core::field::Surface;
 use glint_core::light::whole;
@@ -42,13 +42,13 @@ fn surface_colour(
     mixed(face, round, surface.share())
 }
 
-/// Colour of the lit sphere that was hit; `None` if the ray hit no sphere or fillet.
+/// Colour of the sphere that was hit, with light; `None` if the ray hit no sphere or fillet.
 fn lit(setup: &FieldSetup, palette: &Palette, end: &RayEnd, surface: Surface) -> Option<[u8; 3]> {
     let (normal, number) = (end.normal?, surface.number()?);
     Some(palette.lights.shine_on(number, setup.spheres()?, normal))
 }
 
-/// Mixes two colours, rounded to nearest. `part` is the weight of `to`: 255 gives only `to`.
+/// Mixes two colours, rounded to nearest. `part` is the weight of `to` in 255ths.
 pub(crate) fn mixed(from: [u8; 3], to: [u8; 3], part: u8) -> [u8; 3] {
     core::array::from_fn(|i| {
         let [from, to] = [from[i], to[i]].map(i32::from);

@@ -18,20 +18,20 @@ pub struct Palette {
     pub shadows: [[u8; 3]; 3],
     /// Lights on the spheres, and materials of the spheres.
     pub lights: Lights,
-    /// Colour of an undecided ray, which has reached its step limit. This is the horizon's colour, because most such rays run along a face
-    /// into the distance, where fog and sky have this colour.
+    /// Colour of an undecided ray, which has reached its step limit. This is the horizon's colour, because most undecided rays run along a
+    /// face into the distance, where fog and sky also have the horizon's colour.
     pub undecided: [u8; 3],
     /// Colour of the sky at the zenith.
     pub zenith: [u8; 3],
     /// Colour of the sky at the horizon and below, and of the fog.
     pub horizon: [u8; 3],
-    /// Share of a surface's colour that fog hides; 255 hides all of it. The index is the hit's depth along n times
-    /// 2^−`fog_shift`, rounded down; depths are in field units multiplied by 2^e (docs/formats/raymarch.md, "Rays" and "Ends").
+    /// Fraction of a surface's colour that fog replaces, in 255ths. The index is the hit's depth along n times 2^−`fog_shift`, rounded
+    /// down; depths are in field units multiplied by 2^e (docs/formats/raymarch.md, "Rays" and "Ends").
     pub fog: [u8; 256],
     /// Exponent of the depth step of the table `fog`, 0 to 7.
     pub fog_shift: u32,
-    /// Share of light left at a surface; 255 is all of it. The index is the number of steps of the ray: rays take many
-    /// steps in narrow gaps.
+    /// Fraction of the light that occlusion leaves at a surface, in 255ths. The index is the number of steps of the ray, because rays take
+    /// many steps in narrow gaps.
     pub occlusion: [u8; 256],
 }
 
@@ -81,9 +81,9 @@ impl Palette {
         }
     }
 
-    /// Adds ambient occlusion, which darkens narrow gaps: the share of light left is 255·h/(h + n), rounded down. For rays that march, h is
-    /// 40 and n is the number of steps. For rays by exits, which take far fewer steps, h is 6 and n is the number of steps before the last
-    /// one: a surface that the first step reaches keeps all of its light.
+    /// Adds ambient occlusion, which darkens narrow gaps: the remaining light is 255·h/(h + n), rounded down. For marching rays, h is 40
+    /// and n is the number of steps. For rays by exits, which take far fewer steps, h is 6 and n is the number of steps before the last
+    /// one, so a surface that the first step reaches is not darkened.
     #[must_use]
     pub fn with_occlusion(self, field: &Field) -> Self {
         let (half, last) = if Exits::draws(field) { (6, 1) } else { (40, 0) };
@@ -94,7 +94,7 @@ impl Palette {
         }
     }
 
-    /// Replaces each colour by its luminance in all channels, for two eyes.
+    /// Replaces each colour by the grey of its luminance, for two eyes.
     #[must_use]
     pub fn grey(self) -> Self {
         let grey = |colour| [luminance(colour); 3];

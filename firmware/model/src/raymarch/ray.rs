@@ -1,11 +1,11 @@
-//! Rays that march through a distance field: their start, their march and their end.
+//! Rays that march through a distance field: start, steps and end of a ray.
 
 use glint_core::field::{FRACTION, magnitude};
 
 use super::end::{RayEnd, State};
 use super::marching::{MARCH_FRACTION, Marching};
 
-/// Lower bounds of 1/√q for numbers q in (0, 4], u3.14. The entry i is for q up to (i + 1)/32.
+/// Lower bounds of 1/√q for q in (0, 4], u3.14. Entry i is for q up to (i + 1)/32.
 const PACES: [u32; 128] = paces();
 
 const fn paces() -> [u32; 128] {
@@ -27,7 +27,7 @@ pub struct Ray {
     pub direction: [i32; 3],
     /// Parameter T at the start of the ray, u14.10, rounded down: where it enters the bounding box, or at the near plane.
     pub start: u32,
-    /// Whether the ray misses because it does not meet the bounding box before the far limit. Its start then has no meaning.
+    /// Whether the ray misses because it does not meet the bounding box before the far limit. `start` is then not used.
     pub is_over: bool,
     /// Change of T per distance: a lower bound of 1/|D|, u3.14.
     pub pace: u32,
@@ -40,14 +40,14 @@ pub struct Ray {
 pub struct RayResult {
     /// Whether the ray hit a surface, missed or ended undecided.
     pub state: State,
-    /// Parameter T of the last evaluated point; for a hit, of the point one step farther. u14.10.
+    /// Parameter T of the last evaluated point or, for a hit, of the point one step farther; u14.10.
     pub t: u32,
     /// Number of evaluated points, at most 1023.
     pub steps: u32,
 }
 
 impl Marching {
-    /// Largest parameter T, u14.10: a ray that would step beyond it misses.
+    /// Largest parameter T, u14.10. A ray whose next step would exceed it misses.
     pub const FARTHEST: u32 = (1 << 24) - 1;
 
     /// The ray of pixel (x, y) for an eye.
@@ -59,7 +59,7 @@ impl Marching {
             direction,
             pace: match self.beside.bend {
                 0 => pace(direction),
-                // In a bent union, the point where a ray enters the solid depends on the lengths of its steps.
+                // In a bent union, the point where a ray enters the solid depends on the lengths of the ray's steps.
                 _ => long_pace(direction),
             },
             height: beam.height(),
@@ -117,7 +117,7 @@ impl Marching {
         })
     }
 
-    /// The end of a ray as a picture shows it.
+    /// The end of a ray, with all that the colour and the depth code of a pixel need.
     pub fn seen(&self, ray: &Ray, end: &RayResult) -> RayEnd {
         RayEnd {
             shadow: false,
@@ -130,7 +130,7 @@ impl Marching {
         }
     }
 
-    /// The vector from the centre of the sphere that was hit to the hit; `None` if the ray hit no sphere or fillet.
+    /// The vector from the centre of the hit sphere to the hit point; `None` if the ray hit no sphere or fillet.
     fn normal(&self, ray: &Ray, end: &RayResult) -> Option<[i32; 3]> {
         let State::Hit(surface) = end.state else {
             return None;
@@ -148,13 +148,14 @@ impl Marching {
 
 /// A lower bound of 1/|D|, u3.14, for a direction D, s1.17.
 fn pace(direction: [i32; 3]) -> u32 {
-    // An upper bound of |D|², 12 fraction bits, from the first six bits of each component: at most 3.
+    // An upper bound of |D|², at most 3, with 12 fraction bits, from the first six bits of each component.
     let squares = direction.map(|part| ((magnitude(part) >> 11 & 0x3F) + 1).pow(2));
     let square: u32 = squares.iter().sum();
     PACES[(square >> 7) as usize & 127]
 }
 
-/// As [`pace`], from all bits of the direction, so that the pace does not jump between neighbouring pixels. Only the CPU draws such fields.
+/// As [`pace`], but computed from all bits of the direction, so that the pace does not jump between neighbouring pixels. Used for bent
+/// unions, which only the CPU draws.
 fn long_pace(direction: [i32; 3]) -> u32 {
     // The squares have 34 fraction bits.
     let squares = direction.map(|part| (u64::from(magnitude(part)) + 1).pow(2));
@@ -162,7 +163,8 @@ fn long_pace(direction: [i32; 3]) -> u32 {
     ((1_u64 << 62) / square).isqrt() as u32
 }
 
-/// The change of T by which a ray may advance at a distance from the solid, rounded up, so that T always changes; 0 in the solid.
+/// The change of T by which a ray may advance at a distance from the solid; 0 in the solid. Rounded up, so that T always changes outside of
+/// the solid.
 fn stride(distance: i32, pace: u32) -> u32 {
     const SHIFT: u32 = FRACTION + 14 - MARCH_FRACTION;
     let product = u64::from(distance.max(0) as u32) * u64::from(pace);

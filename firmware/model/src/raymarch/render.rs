@@ -11,12 +11,12 @@ use crate::error::RenderError;
 use crate::frame_buffer::FrameBuffer;
 use crate::triangle::reciprocal::Reciprocal;
 
-/// Statistics of drawing a frame of a field.
+/// Counts of the rays of a drawn field.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FieldStats {
-    /// Rays: one per pixel and eye.
+    /// Number of rays: one per pixel and eye.
     pub rays: u32,
-    /// Evaluations of the field. In a scene with several spheres, a step counts as one evaluation per sphere.
+    /// Number of evaluations of the field. With several spheres, a step of a marching ray counts as one evaluation per sphere.
     pub evaluations: u64,
     /// Number of rays that hit a surface.
     pub hits: u32,
@@ -51,8 +51,8 @@ impl FieldStats {
 /// Draws a field into `target`. A pixel of the target changes if the field's depth code is at least the code stored
 /// there. With two eyes every pixel changes.
 ///
-/// With two eyes `palette` must be grey, and depths are the left eye's. `show` receives the column and row of every ray,
-/// and its end. Not inlined, so that the loop and its callees do not evict each other from the instruction cache.
+/// With two eyes `palette` must be grey, and the depth codes are those of the left eye. `show` receives the column, the row and the end of
+/// every ray. Not inlined, so that the loop and its callees do not evict each other from the instruction cache.
 ///
 /// # Errors
 /// [`RenderError`] if the target's size differs from the setup's; the target is then unchanged.
@@ -126,12 +126,12 @@ impl FieldSetup {
             return 0;
         };
         let Reciprocal { y, lead } = Reciprocal::of(end.depth);
-        // The reciprocal of the depth as an integer has 24 + `lead` fraction bits. The depth has 21 fraction bits, so 21
-        // are subtracted.
+        // The reciprocal of the depth, taken as an integer, has 24 + `lead` fraction bits. The depth has 21 fraction bits, so 21 is
+        // subtracted.
         let shift = lead as i32 + 3 - self.depth.exponent;
         const MOST: u32 = (1 << 18) - 1;
         if shift < 22 {
-            // The code would be at least 2^(16 + 23 − 21), which does not fit 18 bits.
+            // The code is at least 2^(16 + 23 − 21), which does not fit 18 bits, and saturates.
             return MOST;
         }
         let product = u64::from(self.depth.mantissa) * u64::from(y);

@@ -14,7 +14,7 @@ use super::options::FieldOptions;
 use crate::depth::DepthScale;
 use crate::error::{RenderError, whole_picture};
 
-/// The constants of a frame.
+/// The constants of a frame of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FieldSetup {
     /// Width of the window in pixels.
@@ -27,24 +27,24 @@ pub struct FieldSetup {
     pub exponent: u32,
     /// Scale K of depth codes (a code is K/depth), for depths in field units times 2^e.
     pub depth: DepthScale,
-    /// Scale K of depth codes (a code is K/depth), for depths in world units, for the host.
+    /// Scale K of depth codes (a code is K/depth), for depths in world units, with which the host converts codes to distances.
     pub world_depth: DepthScale,
     /// Colours in which the two eyes are shown in stereo; `None` for one eye.
     pub stereo: Option<Tint>,
-    /// How rays find their ends.
+    /// The kind of the rays, with the constants of this kind.
     pub form: Form,
 }
 
-/// How the rays of a field find their ends, with the constants of the solid and of the rays.
+/// The kind of the rays of a field, with the constants of the solid and of the rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(
     clippy::large_enum_variant,
     reason = "without an allocator the constants cannot be boxed"
 )]
 pub enum Form {
-    /// Rays go by exits from whole empty prisms.
+    /// Rays by exits, which step from exit to exit of empty prisms.
     Exits(Exits),
-    /// Rays march by distances.
+    /// Marching rays, which step by distances.
     Marching(Marching),
 }
 
@@ -111,7 +111,7 @@ impl FieldSetup {
         })
     }
 
-    /// The constants of marching rays; `None` if rays go by exits.
+    /// The constants of marching rays; `None` for rays by exits.
     pub const fn marching(&self) -> Option<&Marching> {
         match &self.form {
             Form::Marching(marching) => Some(marching),
@@ -119,7 +119,7 @@ impl FieldSetup {
         }
     }
 
-    /// The constants of rays by exits; `None` if rays march.
+    /// The constants of rays by exits; `None` for marching rays.
     pub const fn exits(&self) -> Option<&Exits> {
         match &self.form {
             Form::Exits(exits) => Some(exits),
@@ -127,7 +127,7 @@ impl FieldSetup {
         }
     }
 
-    /// The spheres, if any.
+    /// The spheres of the field, if any.
     pub fn spheres(&self) -> Option<&FixedSpheres> {
         match &self.form {
             Form::Exits(Exits { spheres, .. }) => {
@@ -154,7 +154,7 @@ fn nearest(view: &View, extent: Option<[Q32_32; 3]>) -> i64 {
         (0..3)
             .map(|i| {
                 let n = i64::from(view.n()[i].to_bits());
-                // The products have 14 + 23 fraction bits. The reach is enlarged slightly, because the length of n is not exactly 1.
+                // The products have 14 + 23 fraction bits. `reach` is enlarged slightly, because the length of n is not exactly 1.
                 let place = n * (view.eye()[i].to_bits() >> 18);
                 let reach = n.abs() * ((half[i].to_bits() >> 18) + 2);
                 -place - reach - (reach >> 13)

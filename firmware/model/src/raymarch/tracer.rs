@@ -4,11 +4,11 @@ use super::end::RayEnd;
 use super::exits::{Cones, Exits};
 use super::setup::{FieldSetup, Form};
 
-/// The constants of a frame, with the cones in which the eyes see its spheres. The cones are not part of the constants, because they are
-/// large.
+/// The constants of a frame, and the cones in which the eyes see the spheres. The cones are separate from the constants, because the cones
+/// are large.
 #[derive(Clone, Copy, Debug)]
 pub struct Tracer<'a> {
-    /// The constants.
+    /// The constants of the frame.
     pub setup: &'a FieldSetup,
     cones: [Cones; 2],
 }

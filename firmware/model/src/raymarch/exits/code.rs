@@ -5,7 +5,7 @@ use super::intervals::{Rule, Solid};
 /// Number of bits of an interval's code ([`Solid::code`]).
 pub const CODE_BITS: u32 = 13;
 
-/// Number of bits of a code after the first bit.
+/// Number of bits of a code after its first bit.
 const DIGITS: u32 = CODE_BITS - 1;
 
 /// The first bit of a code: 0 below the solid, otherwise 1.
@@ -14,7 +14,7 @@ const NOT_BELOW: u32 = 1 << DIGITS;
 /// The code above a solid that is not repeated.
 const ABOVE: u32 = NOT_BELOW | 3 << (DIGITS - 2);
 
-/// For a repeated solid: number of bits of a cell's number, and the bit positions of this number and of the gap in a code.
+/// For a repeated solid: the number of bits of a cell's number, and the positions of the cell's number and of the gap's digit in a code.
 const CELL_BITS: u32 = 6;
 const CELL: u32 = DIGITS - CELL_BITS;
 const GAP: u32 = CELL - 2;

@@ -7,10 +7,10 @@ impl Cone {
     /// Number of words of a cone.
     pub const WORDS: usize = 16;
 
-    /// Number of words of a cone in which an eye sees a sphere: only solid cones use the last word.
+    /// Number of words of a cone in which an eye sees a sphere. Only the cones of solid cones use the last word.
     pub const SPHERE_WORDS: usize = 15;
 
-    /// The words of the cone, with numbers in two's complement. A number of more than 32 bits takes two words, the low word first.
+    /// The words of the cone. Numbers are in two's complement. A number of more than 32 bits takes two words, the low word first.
     pub fn words(&self) -> [u32; Self::WORDS] {
         let [columns, rows] = [self.rectangle.columns, self.rectangle.rows];
         let ([a, b], forward) = (self.sides, self.forward);
@@ -66,17 +66,17 @@ impl Cone {
         }
     }
 
-    /// The words of a cone that no pixel sees, for an eye without cones.
+    /// The words of a cone with an empty rectangle, for an eye without cones.
     pub fn unseen() -> [u32; Self::WORDS] {
         let mut words = [0; Self::WORDS];
-        // The first column exceeds the last one.
+        // In an empty rectangle, the first column exceeds the last one.
         words[0] = 1;
         words
     }
 }
 
 impl Cones {
-    /// A list of these cones, in their order; cones that do not fit the list are dropped.
+    /// A list of these cones, in this order; cones that do not fit the list are dropped.
     pub fn of(cones: impl IntoIterator<Item = Cone>) -> Self {
         let mut all = Self::default();
         cones.into_iter().for_each(|cone| all.push(cone));

@@ -1,12 +1,13 @@
 //! Spheres of a list, and the cones in which an eye sees them.
 //!
-//! An eye outside of a sphere sees it in a cone. With q from the centre to the eye, the unit vector c towards the centre, and the unit
-//! vectors a and b perpendicular to c and to each other, a ray with the direction D meets the sphere of the radius r if
-//! (c·D)² > κ²·((a·D)² + (b·D)²) and c·D > 0, where κ² = |q|²/r² − 1. If ρ² is the difference of the two sides, the ray meets
-//! the sphere at T = (|q|² − r²)/|q| / (c·D + (r/|q|)·ρ). This form of the quadratic equation's solution subtracts no nearly equal numbers.
+//! An eye outside of a sphere sees the sphere in a cone. With q from the centre to the eye, the unit vector c towards the centre, and the
+//! unit vectors a and b perpendicular to c and to each other, a ray with the direction D meets the sphere of the radius r if (c·D)² >
+//! κ²·((a·D)² + (b·D)²) and c·D > 0, where κ² = |q|²/r² − 1. If ρ² is the difference of the two sides of the inequality, the ray meets the
+//! sphere at T = (|q|² − r²)/|q| / (c·D + (r/|q|)·ρ). This form of the quadratic equation's solution avoids the subtraction of nearly equal
+//! numbers.
 //!
-//! If the near plane cuts a sphere, the section is a disc. The rays through a disc form a cone too, with 1 in place of c·D, and 0 in place
-//! of r/|q|, so that T is constant.
+//! If the near plane cuts a sphere, the section is a disc. The rays through the disc also form a cone, with 1 in place of c·D, and 0 in
+//! place of r/|q|, so that T is constant.
 //!
 //! The products with D are linear in a pixel's column and row. The vector b is perpendicular to the direction's change per column, so that
 //! b·D depends on the row only.
@@ -19,19 +20,19 @@ use super::narrow::{nearest, saturated};
 use super::rectangle::Rectangle;
 use super::vectors::{Scaled, Vector, bits, perpendicular, product, rounded, unit};
 
-/// Bits of the magnitude of a change per column or row.
+/// Number of bits of the magnitude of a change per column or row.
 pub(super) const STEP: u32 = 24;
-/// Fraction bits of the linear functions.
+/// Number of fraction bits of the linear functions.
 pub(super) const FRACTION: u32 = 30;
 /// Largest shift of the changes of a cone's sides.
 pub(super) const MOST_SHIFT: u32 = 6;
-/// Exponent of the largest factor of a side, and of the largest distance of a disc from the ray's axis in radii.
+/// Exponent of the largest factor of a side, and of the largest coordinate of a ray relative to a disc's centre, in radii.
 pub(super) const MOST_SIDE: i32 = 12;
 /// Largest number of halvings. Only a sphere that is far smaller than a pixel would need more.
 const MOST_HALVINGS: i32 = 20;
-/// Fraction bits of the ratio of the radius to the distance of the centre.
+/// Number of fraction bits of r/|q|, the ratio of the radius to the distance of the centre.
 pub(super) const SHARE: u32 = 17;
-/// Bits of the mantissa of a cone's distance.
+/// Number of bits of the mantissa of a cone's distance.
 const DISTANCE: u32 = 24;
 /// The bias of a cone's exponent: its distance is the mantissa times 2^(exponent − bias).
 pub(super) const DISTANCE_OFFSET: i32 = 24;
@@ -49,17 +50,18 @@ pub struct Cones {
 }
 
 impl Cone {
-    /// The number of the base of a solid cone, in place of a sphere's number.
+    /// The value of `number` for the base of a solid cone.
     pub const BASE: u8 = 7;
 
-    /// The forward function at a pixel, s1.30. Far from the rectangle of a solid cone it may exceed its word; it then wraps modulo 4.
+    /// The function `forward` at a pixel, s1.30. Far from the rectangle of a solid cone the value may exceed its word; it then wraps modulo
+    /// 4.
     pub(super) const fn forward_at(&self, column: u32, row: u32) -> i64 {
         self.forward.at(column, row, 0) as i32 as i64
     }
 }
 
 impl Cones {
-    /// The cones.
+    /// The cones as a slice.
     pub fn list(&self) -> &[Cone] {
         &self.list[..self.count]
     }
@@ -78,45 +80,46 @@ impl Cones {
 pub struct Cone {
     /// What a ray in the cone meets.
     pub kind: ConeKind,
-    /// Number of the sphere, or of the lateral surface of a solid cone.
+    /// Number of the sphere, or of the surface of a solid cone.
     pub number: u8,
     /// The pixels that may see the sphere.
     pub rectangle: Rectangle,
-    /// c·D, 1 for a disc.
+    /// c·D (see the top of this file); 1 for a disc.
     pub forward: Linear,
-    /// κ·(a·D) and κ·(b·D); for a disc, the distances of its centre from the ray along a and b, in radii. The second side changes along a
-    /// row only for solid cones.
+    /// κ·(a·D) and κ·(b·D); for a disc, the distances of the disc's centre from the ray along a and b, in radii. The second function
+    /// changes along a row only for solid cones.
     pub sides: [Linear; 2],
     /// Exponent of 2 by which the changes of `sides` are multiplied: 0, 2, 4 or 6.
     pub shift: u32,
-    /// r/|q|, u0.17; 0 for a disc.
+    /// r/|q|, in u0.17; 0 for a disc.
     pub share: i64,
     /// (|q|² − r²)/|q| in field units, or T of the near plane for a disc: a mantissa of 24 bits and an exponent of 0 to 15, with a bias
     /// of 24.
     pub distance: (i64, u32),
 }
 
-/// What a ray in a cone meets, and how its ends follow from the linear functions (`solid_cone` has the formulas).
+/// What a ray in a cone meets, which determines how T follows from the linear functions (`solid_cone` has the formulas).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ConeKind {
-    /// A sphere, or its disc in the near plane.
+    /// A sphere, or the disc that the near plane cuts from a sphere.
     #[default]
     Sphere,
-    /// The plane of a solid cone's base, for an eye below the plane: rays in the cone meet the base, and the other faces are behind the
+    /// The plane of a solid cone's base, for an eye below the plane: rays in the cone meet the base, and the lateral surface is behind the
     /// plane.
     Base,
-    /// The same plane for an eye above it: no ray meets the base, and the other faces are before the plane.
+    /// The plane of a solid cone's base, for an eye above the plane: no ray meets the base, and the lateral surface is in front of the
+    /// plane.
     Limit,
     /// The lateral surface of a solid cone.
     Lateral,
-    /// The lateral surface, for an eye above the apex that sees it all around.
+    /// The lateral surface of a solid cone, for an eye above the apex that sees the surface on all sides.
     Around,
-    /// The section of the near plane and of a solid cone.
+    /// The section of a solid cone by the near plane.
     Section,
 }
 
 impl ConeKind {
-    /// All kinds, by their number in the gateware; unused numbers act as spheres.
+    /// The kind for each number in the gateware; unused numbers act as spheres.
     pub(super) const ALL: [Self; 8] = [
         Self::Sphere,
         Self::Base,
@@ -147,19 +150,20 @@ impl Linear {
     }
 }
 
-/// The view of an eye: its position, rays and near plane.
+/// The position, the rays and the near plane of an eye.
 pub(super) struct Sight {
     /// Position in field units, s13.12.
     pub(super) origin: [i32; 3],
     /// Direction D of the first ray, and its changes per column and row, s2.30.
     pub(super) directions: [Vector; 3],
-    /// The parameter T of the near plane, u14.14, slightly enlarged: a hit on a sphere that rounding moves before the plane is in the disc.
+    /// The parameter T of the near plane, u14.14, slightly enlarged, so that a hit on a sphere that rounding moves in front of the plane is
+    /// in the disc.
     pub(super) near: Scaled,
-    /// T of the hits in a disc: T of the near plane, or larger by at most 2^−16.
+    /// T of the hits in a disc: T of the near plane, or larger by a relative 2^−16 at most.
     disc: Scaled,
-    /// The near plane's normal, and two axes in the plane; the second is perpendicular to the change per column.
+    /// The near plane's normal, and two axes in the plane. The second axis is perpendicular to the change of D per column.
     pub(super) plane: [Vector; 3],
-    /// The first ray's point in the near plane, from the eye, with 16 fraction bits.
+    /// The vector from the eye to the first ray's point in the near plane, with 16 fraction bits.
     pub(super) point: Vector,
 }
 
@@ -174,7 +178,7 @@ impl Sight {
     /// The view of an eye at `origin`, with the near plane at the parameter `near`, u14.14.
     pub(super) fn new(origin: [i32; 3], directions: [Vector; 3], near: i64) -> Self {
         let [first, step, down] = directions;
-        // In a picture of a single ray, the changes are 0.
+        // The changes per column and row are 0 in a picture of a single ray.
         let normal = match cross(step, down) {
             [0, 0, 0] => unit(first.map(i64::from)),
             normal => unit(normal),
@@ -196,7 +200,7 @@ impl Sight {
         }
     }
 
-    /// Computes the cones of a sphere, whose number and rectangle are those of `cone`.
+    /// Computes the cones of a sphere and passes them to `take`. `cone` has the number and the rectangle of the sphere.
     pub(super) fn cones(&self, sphere: &FixedSphere, cone: &mut Cone, take: &mut dyn FnMut(&Cone)) {
         if cone.rectangle.is_empty() {
             return;
@@ -216,7 +220,8 @@ impl Sight {
         }
     }
 
-    /// The distance from a point to the near plane, with 16 fraction bits. `q` leads from the point to the eye, with 16 fraction bits.
+    /// The distance from a point to the near plane, with 16 fraction bits. `q` is the vector from the point to the eye, with 16 fraction
+    /// bits.
     fn depth(&self, q: &Vector) -> i64 {
         let point = [0, 1, 2].map(|i: usize| q[i] + self.point[i]);
         rounded(product(&point, &self.plane[0]), 30)
@@ -228,7 +233,7 @@ impl Sight {
         self.depth(&q).abs() < i64::from(sphere.radius) << 4
     }
 
-    /// A pixel and its ray.
+    /// The pixel with this column and row, and its ray.
     pub(super) fn pixel(&self, [column, row]: [u32; 2]) -> Pixel {
         let [first, step, down] = &self.directions;
         Pixel {
@@ -242,7 +247,8 @@ impl Sight {
         }
     }
 
-    /// Sets the constants of the cone around a sphere. `q` leads from the sphere's centre to the eye. Returns `false` for an eye inside.
+    /// Sets the constants of the cone around a sphere. `q` is the vector from the sphere's centre to the eye. Returns `false` for an eye
+    /// inside the sphere.
     fn outline(&self, cone: &mut Cone, q: &Vector, radius: i32, middle: &Pixel) -> bool {
         let radius = i64::from(radius.max(1));
         let square = product(q, q);
@@ -251,7 +257,7 @@ impl Sight {
             return false;
         }
         let forward = unit(q.map(|part| -i64::from(part)));
-        // Any axis perpendicular to `forward` if the direction does not change along a row, or changes towards the centre.
+        // `b` is any axis perpendicular to `forward` if D does not change along a row, or changes in the direction of the centre.
         let b = perpendicular(&forward, &self.directions[1]);
         let a = perpendicular(&b, &forward);
         // Quotients and roots are computed as products with reciprocal square roots.
@@ -283,8 +289,8 @@ impl Sight {
         true
     }
 
-    /// Sets the constants of the cone of a disc in the near plane. `q` leads from the sphere's centre to the eye, with 16 fraction bits.
-    /// `square` is the square of the disc's radius, with 32 fraction bits.
+    /// Sets the constants of the cone of a disc in the near plane. `q` is the vector from the sphere's centre to the eye, with 16 fraction
+    /// bits. `square` is the square of the disc's radius, with 32 fraction bits.
     // Not inlined, because most spheres do not reach the near plane.
     #[inline(never)]
     fn disc(&self, cone: &mut Cone, q: &Vector, square: i64, middle: &Pixel) {
@@ -313,8 +319,8 @@ impl Sight {
         cone.distance = distance(self.disc.by(divisor));
     }
 
-    /// Sets the sides of a cone. `varies` states whether the second side changes along a row; otherwise its axis is perpendicular to the
-    /// change per column. Returns how often the constants of the cone are halved, so that they fit their words.
+    /// Sets the functions `sides` of a cone. `varies` states whether the second function changes along a row; if not, its axis is
+    /// perpendicular to the change of D per column. Returns how often the constants of the cone must be halved to fit their words.
     #[inline(never)]
     pub(super) fn set_sides(
         &self,
@@ -348,18 +354,18 @@ impl Sight {
 pub(super) struct Function<'a> {
     pub axis: &'a Vector,
     pub factor: Scaled,
-    /// The offset, with 30 fraction bits.
+    /// The constant term, with 30 fraction bits.
     pub offset: i64,
 }
 
 impl Function<'_> {
-    /// The change of the function for a change `step` of D, 30 fraction bits.
+    /// The change of the function for a change `step` of D, with 30 fraction bits.
     pub(super) fn change(&self, step: &Vector) -> i64 {
         self.factor.times(product(self.axis, step))
     }
 
-    /// The function of a pixel, from its changes per column and row: halved `halvings` times, with the changes in units of 2^`shift`. The
-    /// rounding of the changes has the smallest effect at the pixel `middle`.
+    /// The linear function with these changes per column and row, halved `halvings` times. The changes are stored in units of 2^`shift`.
+    /// Their rounding has the smallest effect at the pixel `middle`.
     #[inline(never)]
     pub(super) fn words(
         &self,
@@ -383,8 +389,8 @@ impl Function<'_> {
     }
 }
 
-/// The mantissa and the exponent of a cone's distance. It is larger than the exact distance by a relative 2^−19, because the mantissa of a
-/// reciprocal is rounded down to 18 fraction bits.
+/// The mantissa and the exponent of a cone's distance. The result is larger than the exact distance by a relative 2^−19, to compensate that
+/// the mantissa of a reciprocal is rounded down to 18 fraction bits.
 pub(super) fn distance(exact: Scaled) -> (i64, u32) {
     let exponent = (exact.log2() + 1 - DISTANCE as i32 + DISTANCE_OFFSET).clamp(0, MOST_DISTANCE);
     let mantissa = exact.fixed_at(exponent - DISTANCE_OFFSET);

@@ -15,7 +15,7 @@ use crate::raymarch::State;
 pub struct End {
     /// A hit or a miss; no ray is undecided.
     pub state: State,
-    /// Parameter T at the end, with 14 integer bits and the fraction bits of `Words::parameter`; for a miss, T at the last exit.
+    /// Parameter T at the end, with 14 integer bits and `Words::parameter` fraction bits; for a miss, T at the last exit.
     pub t: i64,
     /// Number of evaluations of the flat solid or the lattice.
     pub steps: u32,
@@ -29,7 +29,7 @@ impl Exits {
         self.follow(beam, &corner, met, met.map_or(self.far, |met| met.t))
     }
 
-    /// The surface that belongs to the number of a cone.
+    /// The surface of the cone with this number.
     const fn surface(&self, number: u8) -> Surface {
         match number == Cone::BASE && self.spheres.cone.is_some() {
             true => Surface::BASE,
@@ -37,11 +37,11 @@ impl Exits {
         }
     }
 
-    /// Follows a ray to its end, up to the parameter `limit`. `corner` is the ray's origin, from the solid's lower corner along the
+    /// Follows a ray to its end, up to the parameter `limit`. `corner` is the ray's origin relative to the solid's lower corner, along the
     /// mirrored axes. `met` is the sphere of a list that the ray meets at `limit`, if any.
     ///
     /// Each evaluation advances the interval of at least one axis, and no interval ever decreases. A ray therefore always ends.
-    // Inlined, so that shadow rays, which most frames do not have, have their own copy of the code.
+    // Inlined, so that shadow rays, which few frames have, use their own copy of the code.
     #[inline(always)]
     pub(super) fn follow(
         &self,

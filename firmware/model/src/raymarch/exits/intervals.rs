@@ -1,7 +1,7 @@
 //! Solids as rules about the intervals of a point along three axes.
 //!
-//! Coordinates are counted from the solid's lower corner, along axes that are mirrored so that every ray points up: a bounded solid is
-//! between 0 and its side. Interval numbers increase along every axis.
+//! Coordinates are relative to the solid's lower corner, along axes that are mirrored so that every ray points up. The coordinates of a
+//! bounded solid are between 0 and the solid's side. Interval numbers increase along every axis.
 
 use core::ops::Range;
 
@@ -22,9 +22,9 @@ pub enum Rule {
     /// The inside of a box. Interval numbers: −1 below the box, 0 inside, 1 above.
     #[default]
     Box,
-    /// The outside of a slab between two planes perpendicular to z, with the same interval numbers.
+    /// The outside of a slab between two planes perpendicular to z. Interval numbers as for a box.
     Planes,
-    /// The Menger sponge. Interval numbers: −1 below the sponge, then the numbers of the smallest cells of the scale, from 0.
+    /// The Menger sponge. Interval numbers: −1 below the sponge, then the numbers of the smallest cells, from 0.
     Sponge {
         /// Number of the smallest cells along an axis: 3^4 or 3^6.
         cells: i32,
@@ -36,17 +36,17 @@ pub enum Rule {
     /// Boxes, or spheres in cubes, in every cell of a lattice. Interval numbers: 2·cell in a box, 2·cell + 1 in the gap above the box. An
     /// axis along which the side of a box equals the period has no gaps. The solid ends before cell `LAST_CELL`.
     Repeated {
-        /// Whether spheres with the side of a cube as diameter replace the boxes.
+        /// Whether each box contains a sphere whose diameter is the box's side, in place of a solid.
         round: bool,
     },
-    /// The octahedron: a box along its four diagonals, with the interval numbers of a box. An octahedron is convex: a ray that has left the
-    /// prism around the eye is not below any slab, so a lane does not need the border of the fourth slab.
+    /// The octahedron: the intersection of four slabs perpendicular to its diagonals, with the interval numbers of a box. An octahedron is
+    /// convex: a ray that has left the prism around the eye is not below any slab, so a lane does not need the border of the fourth slab.
     Octahedron,
 }
 
 impl Rule {
-    /// The sponge with this number of levels, at most 6. The side of its smallest cells is a power of two: a field unit, or an eighth of
-    /// one in a sponge of more than four levels.
+    /// The sponge with this number of levels, at most 6. The side of the smallest cells is a power of two: 1 field unit, or 1/8 field unit
+    /// in a sponge of more than four levels.
     pub const fn sponge(levels: u32) -> Self {
         let (cells, exponent) = match levels {
             ..=4 => (81, FRACTION),
@@ -64,14 +64,14 @@ impl Rule {
         matches!(self, Self::Repeated { round: true })
     }
 
-    /// Whether the solid casts shadows on its own faces. Boxes and octahedra are convex, no light enters the room between planes from
-    /// outside, and shadows of spheres are not drawn.
+    /// Whether the solid casts shadows on its own faces. Boxes and octahedra do not, because they are convex, and planes do not, because no
+    /// light enters the room between them. Shadows of spheres are not drawn.
     pub const fn has_shadows(&self) -> bool {
         matches!(self, Self::Sponge { .. } | Self::Repeated { round: false })
     }
 
-    /// Number of levels of a sponge. With the number 1 the gateware distinguishes spheres from cubes, and an octahedron from a box; other
-    /// solids have 0.
+    /// Number of levels of a sponge. The value 1 tells the gateware that repeated cubes are spheres, or that a box is an octahedron; other
+    /// solids have the value 0.
     pub const fn levels(&self) -> u32 {
         match *self {
             Self::Octahedron => 1,
@@ -85,9 +85,9 @@ impl Rule {
 /// A solid, for one frame. The default is an empty box.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Solid {
-    /// The rule.
+    /// The rule that maps the intervals of a point to the solid or an empty prism.
     pub rule: Rule,
-    /// Side of the solid along each axis, u12.12; for a repeated solid, the side of a box.
+    /// Side length of the solid along each axis, u12.12; for a repeated solid, the side length of a box.
     pub side: [i64; AXES],
 }
 
@@ -96,11 +96,11 @@ pub struct Solid {
 pub enum Place {
     /// In the solid.
     Solid,
-    /// Above the solid along an axis: the ray does not come back.
+    /// Above the solid along an axis: the ray cannot meet the solid any more.
     Gone,
     /// In an empty prism.
     Empty(Prism),
-    /// In the box about a sphere.
+    /// In the bounding box of a sphere.
     Box(Prism),
 }
 
@@ -109,7 +109,7 @@ pub enum Place {
 pub struct Prism {
     /// The upper border along each axis; `None` if the axis does not bound the prism.
     pub borders: [Option<Border>; AXES],
-    /// The exit at which the ray leaves the prism.
+    /// Which of the exits along the axes leaves the prism.
     pub exit: Exit,
 }
 
@@ -122,22 +122,22 @@ pub struct Border {
     pub next: i32,
 }
 
-/// Which of the exits along the axes, in the order in which a ray reaches them, leaves a prism.
+/// Which exit leaves a prism, among the exits along the axes in the order in which a ray reaches them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Exit {
-    /// The first: the ray is in a prism while it is in all intervals.
+    /// The first exit: the ray is in the prism while it is in all intervals.
     #[default]
     First,
-    /// The second of three: the ray is in one of three prisms while it is in two of the intervals.
+    /// The second of three exits: the ray is in one of three prisms while it is in two of the intervals.
     Second,
-    /// The last: the ray is in a prism while it is in any of the intervals.
+    /// The last exit: the ray is in the prism while it is in any of the intervals.
     Last,
 }
 
 impl Exit {
-    /// The axis of the exit at which the ray leaves a prism, and whether the ray has crossed the border along each axis by then. Of equal
-    /// exits, the one along the axis with the smaller number is the earlier one. `exits` has the parameters at the borders; without any,
-    /// the axis is z.
+    /// The axis of the exit at which the ray leaves a prism, and for each axis whether the ray has crossed the border by then. Of two exits
+    /// at the same parameter, the exit along the axis with the smaller number is the earlier one. `exits` has the parameters at the
+    /// borders; without borders, the axis is z.
     pub(super) fn leaving(self, exits: &[Option<i64>; AXES]) -> (usize, [bool; AXES]) {
         let rank = |axis: usize| {
             let exit = exits[axis]?;
@@ -174,8 +174,8 @@ impl Solid {
         })
     }
 
-    /// The intervals of a point. Rounding may place a point below a border that its ray has crossed: intervals are never below those
-    /// that the ray has `reached`.
+    /// The intervals of a point. Rounding may move a point below a border that the ray has crossed, so the result is never below the
+    /// intervals that the ray has `reached`.
     pub(super) fn intervals(&self, point: &[i64; AXES], reached: &[i32; AXES]) -> [i32; AXES] {
         [0, 1, 2, 3].map(|axis: usize| {
             let (x, side) = (point[axis], self.side[axis]);
@@ -196,7 +196,7 @@ impl Solid {
         })
     }
 
-    /// Where a point with these intervals is.
+    /// Where a point with these intervals is, relative to the solid.
     pub(super) fn place(&self, k: &[i32; AXES]) -> Place {
         match self.rule {
             Rule::Box => outside(k, 1, 0..3).unwrap_or(Place::Solid),
@@ -249,7 +249,7 @@ impl Solid {
         }
     }
 
-    /// Whether the interval of an axis is above the solid: a ray that has reached it does not come back.
+    /// Whether the interval along an axis is above the solid: a ray that has reached this interval cannot meet the solid any more.
     pub(super) fn is_above(&self, axis: usize, interval: i32) -> bool {
         match self.rule {
             Rule::Sponge { cells, .. } => interval >= cells,
@@ -260,11 +260,11 @@ impl Solid {
         }
     }
 
-    /// The surface that a ray hits after its last crossing of a border, along the axis `face`. `down` states which axes are mirrored.
+    /// The surface that a ray hits whose last crossed border is along the axis `face`. `down` states which axes are mirrored.
     pub(super) fn surface(&self, down: &[bool; AXES], face: usize) -> Surface {
         match self.rule {
             Rule::Octahedron => {
-                // Normals of the slabs: bit i is set if component i is positive. A ray meets the face whose normal is against it.
+                // Normals of the slabs: bit i is set if component i is positive. A ray meets the face whose normal points against the ray.
                 const NORMALS: [u8; AXES] = [0b110, 0b101, 0b011, 0b111];
                 let normal = NORMALS[face];
                 Surface::Octant {
@@ -286,7 +286,7 @@ fn prism(exit: Exit, border: impl Fn(usize) -> Option<Border>) -> Prism {
     }
 }
 
-/// Where a point outside of a box is; `None` for a point inside. `above` is the first interval above the box.
+/// Where a point outside of a box is; `None` for a point inside the box. `above` is the number of the first interval above the box.
 fn outside(k: &[i32; AXES], above: i32, axes: Range<usize>) -> Option<Place> {
     if axes.clone().any(|axis| k[axis] >= above) {
         return Some(Place::Gone);
@@ -300,11 +300,11 @@ fn outside(k: &[i32; AXES], above: i32, axes: Range<usize>) -> Option<Place> {
 
 /// The empty prism of a point in the cube about a sponge.
 ///
-/// The sponge is the intersection of three extruded Sierpinski carpets: a point is outside if two of its digits are 1 at some level. It is
-/// then in a prism between the borders of the two cells, which goes through the whole sponge along the third axis. With three such digits
-/// there are three prisms.
+/// The sponge is the intersection of three extruded Sierpinski carpets: a point is outside if, at some level, the digits of two of its
+/// coordinates are 1. The point is then in a prism that is bounded along these two axes by the borders of the point's cell at this level,
+/// and that goes through the whole sponge along the third axis. If all three digits are 1, there are three prisms.
 ///
-/// Returns which exit leaves the prism, and the cells above its borders; `None` in the sponge.
+/// Returns which exit leaves the prism, and the numbers of the cells above the prism's borders; `None` for a point in the sponge.
 fn sponge(k: &[i32; AXES], cells: i32, last: i32) -> Option<(Exit, [i32; AXES])> {
     let mut cell = cells / 3;
     while cell >= last {

@@ -1,4 +1,4 @@
-//! Reductions of a number's width, each of which states its rounding; squares and roots.
+//! Functions that reduce the width of a number, each with its own rounding, and functions for squares and roots.
 
 use glint_core::field::normalised_root;
 
@@ -22,7 +22,7 @@ pub(super) const fn nearest(x: i64, bits: i32) -> i64 {
     }
 }
 
-/// Returns the nearest number to x that fits `bits` bits and a sign.
+/// Returns x, saturated to `bits` bits and a sign.
 pub(super) const fn saturated(x: i64, bits: u32) -> i64 {
     let most = (1 << bits) - 1;
     if x > most {
@@ -48,7 +48,7 @@ pub(super) const fn shifted(x: i64, shift: i32, bits: u32) -> i64 {
     }
 }
 
-/// The square of x less the square of its lowest `cut` bits, computed as one product in which one factor is shorter than x.
+/// The square of x minus the square of its lowest `cut` bits, computed as one product in which one factor is shorter than x.
 pub(super) const fn squared(x: i64, cut: u32) -> i64 {
     let first = x >> cut << cut;
     first * (2 * x - first)

@@ -7,7 +7,7 @@ use super::narrow::{floor, nearest, squared};
 use super::setup::Exits;
 use super::words::Inverse;
 
-/// A ray before its first evaluation. Its axes are those of the solid: x, y and z, or the four diagonals of an octahedron.
+/// A ray before its first evaluation. The axes are those of the solid: x, y and z, or the four diagonals of an octahedron.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Beam {
     /// Number of the eye: 0 for the left or only eye, 1 for the right eye.
@@ -18,14 +18,14 @@ pub struct Beam {
     pub row: u32,
     /// Whether the ray points down along each axis; the axis is then mirrored.
     pub down: [bool; AXES],
-    /// Magnitude of the direction's component along each axis, u0.28: an odd number, the middle of the interval of the truncated
-    /// component.
+    /// Magnitude of the direction's component along each axis, u0.28. The component is truncated, and the magnitude is the middle of the
+    /// truncation interval, an odd number.
     pub speed: [u32; AXES],
     /// Reciprocals of `speed`.
     pub inverse: [Inverse; AXES],
     /// The number of doublings, 0 to 3, that brings the direction's length to between 1 and 2.
     pub doublings: u32,
-    /// D's components along x, y and z, s1.10, rounded down; for an octahedron, half of them.
+    /// D's components along x, y and z, s1.10, rounded down; halved for an octahedron.
     pub heading: [i32; 3],
     /// The square of the doubled direction's length, u2.23, rounded down.
     pub square: i64,
@@ -40,11 +40,11 @@ pub struct Beam {
 /// A point on a ray's path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Way {
-    /// The parameter T, with 14 integer bits and the fraction bits of `Words::parameter`.
+    /// The parameter T, with 14 integer bits and `Words::parameter` fraction bits.
     pub t: i64,
     /// The axis of the last crossed border.
     pub face: usize,
-    /// The intervals that the ray has reached; the lowest number along an axis without a crossed border.
+    /// The interval that the ray has reached along each axis; the lowest number if no border along the axis has been crossed.
     pub reached: [i32; AXES],
 }
 
@@ -69,7 +69,7 @@ impl Beam {
 }
 
 impl Way {
-    /// Whether the ray has left the solid for good, or is beyond its limit.
+    /// Whether the ray can meet the solid no more: it is above the solid along an axis, or beyond `limit`.
     pub(super) fn has_left(&self, solid: &Solid, limit: i64) -> bool {
         self.t > limit || (0..AXES).any(|axis| solid.is_above(axis, self.reached[axis]))
     }
@@ -78,11 +78,11 @@ impl Way {
 impl Exits {
     /// The ray of pixel (x, y) for an eye.
     pub fn ray(&self, eye: usize, column: u32, row: u32) -> Beam {
-        // The direction D, s1.27, rounded down: the component k stands for the middle of its interval, k + 1/2. The magnitude of a negative
-        // component is therefore its complement. The component wraps only for invalid frame constants.
+        // The direction D, s1.27, rounded down. A component k represents the middle of its truncation interval, k + 1/2, so the magnitude
+        // of a negative component is the component's bitwise complement. A component wraps only for invalid frame constants.
         let [x, y, z] = self.direction(eye, column, row).map(|part| part << 1 >> 4);
-        // The component along the fourth diagonal of an octahedron is the sum of the others. The sum of three middles k + 1/2 is again the
-        // middle of an interval. The sum of the components along two diagonals is half the component along an axis.
+        // The component along the fourth diagonal of an octahedron is the sum of the three other components. The sum of three middles k +
+        // 1/2 is again the middle of an interval. The sum of the components along two diagonals is half the component along x, y or z.
         let first @ [a, b, c] = [x, y, z].map(|part| part >> 17);
         let (fourth, heading) = match self.octahedron() {
             Some(_) => ((x + y + z + 1) << 4 >> 4, [b + c, a + c, a + b]),
@@ -91,14 +91,14 @@ impl Exits {
         let direction = [x, y, z, fourth];
         let down = direction.map(|part| part < 0);
         let speed = direction.map(|part| 2 * magnitude(part) + 1);
-        // The squares of the first 23 bits, without the square of the lowest 6 of them.
+        // The squares of the highest 23 bits, minus the square of the lowest 6 of these bits.
         let [x, y, z, _] = speed.map(|speed| squared(i64::from(speed >> 5), 6));
         let square = x + y + z;
         // No camera has a direction shorter than 1/8.
         let doublings = (0..3).find(|&doublings| square >> (46 - 2 * doublings) != 0);
         let doublings = doublings.unwrap_or(3);
         let square = square >> (23 - 2 * doublings);
-        // A quarter of the square is below 1.
+        // `Inverse::of` requires a number below 1, which a quarter of the square is.
         let quarter = Inverse::of((square as u32) << 3, &self.words);
         let beam = Beam {
             eye,
@@ -133,7 +133,7 @@ impl Exits {
         }
     }
 
-    /// Whether a ray ends without an evaluation: it hits no flat solid up to the parameter `limit`.
+    /// Whether a ray ends without an evaluation, because it cannot hit the flat solid up to the parameter `limit`.
     pub fn ends_at_start(&self, beam: &Beam, limit: i64) -> bool {
         let has_left = |solid: &Solid| beam.start.has_left(solid, limit);
         beam.is_away || self.solid.as_ref().is_none_or(has_left)
@@ -148,8 +148,8 @@ impl Exits {
         self.leave(beam, way, prism.exit, &borders)
     }
 
-    /// The point where a ray leaves the prism that contains the point `way`. `borders` has the distance from the eye to each of the prism's
-    /// borders, and the interval beyond it.
+    /// The point where a ray leaves the prism that contains the point `way`. `borders` has, for each border of the prism, the distance from
+    /// the eye to the border and the interval beyond the border.
     fn leave(
         &self,
         beam: &Beam,
@@ -173,15 +173,15 @@ impl Exits {
         }
     }
 
-    /// The magnitude of a direction's component in products with it, with one fraction bit more than `Words::direction`: an odd number, the
-    /// middle of the interval of the truncated magnitude.
+    /// The magnitude of a direction's component for the product T·D. The magnitude is truncated to `Words::direction` fraction bits; the
+    /// result is the middle of the truncation interval, with one more fraction bit.
     pub(super) fn speed(&self, beam: &Beam, axis: usize) -> i64 {
         let cut = 27 - self.words.direction;
         i64::from((beam.speed[axis] >> 1 >> cut) << 1 | 1)
     }
 
-    /// The point of a ray at the parameter `t`, from the solid's lower corner along each mirrored axis, s15.12: rounded down, but to
-    /// nearest in a lattice. `corner` is the ray's origin in the same coordinates, s13.12.
+    /// The point of a ray at the parameter `t`, relative to the solid's lower corner, along mirrored axes, s15.12. It is rounded down, or
+    /// to nearest in a lattice. `corner` is the ray's origin in the same coordinates, s13.12.
     pub(super) fn point(&self, beam: &Beam, corner: &[i64; AXES], t: i64) -> [i64; AXES] {
         let bits = (self.words.parameter + self.words.direction + 1) as i32 - 12;
         let is_lattice = (self.solid).is_some_and(|solid| solid.rule.is_lattice());
@@ -196,8 +196,9 @@ impl Exits {
         [x, y, z, self.fourth(beam, [x, y, z])]
     }
 
-    /// The coordinate of a point along the fourth diagonal of an octahedron, from the other three: each is counted from the solid's lower
-    /// corner, along a mirrored axis, and stands for the middle of its interval. 0 for other solids.
+    /// The coordinate of a point along the fourth diagonal of an octahedron, computed from the three other coordinates; 0 for other solids.
+    /// Each coordinate is relative to the solid's lower corner, along a mirrored axis, and represents the middle of its truncation
+    /// interval.
     fn fourth(&self, beam: &Beam, point: [i64; 3]) -> i64 {
         let Some(solid) = self.octahedron() else {
             return 0;

@@ -1,4 +1,4 @@
-//! Rectangles on the screen around spheres.
+//! Bounding rectangles of spheres on the screen.
 
 use glint_core::camera::View;
 use glint_core::field::{FRACTION, units};
@@ -7,7 +7,8 @@ use glint_core::picture::Window;
 
 use super::vectors::{Scaled, product};
 
-/// Number of columns of a group. Rectangles consist of whole groups: the gateware finds the spheres of a group at once.
+/// Number of columns of a group. Rectangles consist of whole groups, because the gateware finds the spheres for all columns of a group at
+/// once.
 const GROUP: u32 = 8;
 
 /// Base-2 logarithm of the far limit's depth in field units.
@@ -16,14 +17,14 @@ pub(super) const FAR: u32 = 11;
 /// A rectangle of pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rectangle {
-    /// First and last column, of whole groups of eight; the first exceeds the last if no pixel sees the sphere.
+    /// First and last column, at the borders of groups. The first column exceeds the last one in an empty rectangle.
     pub columns: [u32; 2],
     /// First and last row.
     pub rows: [u32; 2],
 }
 
 impl Rectangle {
-    /// The rectangle without pixels.
+    /// The empty rectangle.
     pub(super) const NONE: Self = Self {
         columns: [1, 0],
         rows: [1, 0],
@@ -35,12 +36,12 @@ impl Rectangle {
         columns[0] <= column && column <= columns[1] && rows[0] <= row && row <= rows[1]
     }
 
-    /// Whether there is no pixel in the rectangle.
+    /// Whether the rectangle contains no pixel.
     pub const fn is_empty(&self) -> bool {
         self.columns[0] > self.columns[1] || self.rows[0] > self.rows[1]
     }
 
-    /// Column and row in the middle.
+    /// Column and row of the pixel in the middle.
     pub(super) const fn middle(&self) -> [u32; 2] {
         let Self { columns, rows } = self;
         [(columns[0] + columns[1]) / 2, (rows[0] + rows[1]) / 2]
@@ -55,13 +56,13 @@ impl Rectangle {
     }
 }
 
-/// The screen of an eye.
+/// The projection of an eye to the pixels of a window.
 pub(super) struct Screen {
-    /// The eye in field units, s13.12.
+    /// Position of the eye in field units, s13.12.
     eye: [i32; 3],
     /// The camera's axes u, v and n, s2.23.
     axes: [[i32; 3]; 3],
-    /// Numbers of pixels, and their lengths at distance 1, u7.12, across and down.
+    /// Across and down: a number of pixels, and their total length at distance 1, u7.12.
     scales: [(u32, i32); 2],
     /// Middle of the picture along u and v at distance 1, s3.12.
     centre: [i32; 2],
@@ -70,7 +71,7 @@ pub(super) struct Screen {
 }
 
 impl Screen {
-    /// The screen of a camera for a window of a picture. `scale` is the number of field units per world unit.
+    /// The projection of a camera to a window of a picture. `scale` is the number of field units per world unit.
     pub(super) fn new(view: &View, scale: Q32_32, window: Window) -> Self {
         let axes = [view.u(), view.v(), view.n()];
         Self {
@@ -83,12 +84,12 @@ impl Screen {
         }
     }
 
-    /// A rectangle around the pixels that may see a sphere. `centre` and `radius` are in field units with 12 fraction bits.
+    /// A rectangle that contains all pixels that see a sphere. `centre` and `radius` are in field units with 12 fraction bits.
     pub(super) fn around(&self, centre: [i32; 3], radius: i32) -> Rectangle {
-        // The camera's axes may be longer than 1 by 10^−4.
+        // The length of a camera axis may be up to 1 + 10^−4, so the radius is enlarged.
         let radius = radius + (radius >> 10) + 4;
         let place = [0, 1, 2].map(|i: usize| centre[i] - self.eye[i]);
-        // Each has at most 27 bits.
+        // Each of the three coordinates has at most 27 bits.
         let [right, down, depth] = self.axes.map(|axis| (product(&axis, &place) >> 23) as i32);
         if depth - radius >= 1 << (FAR + FRACTION) {
             return Rectangle::NONE;

@@ -1,4 +1,4 @@
-//! The end of a ray as a picture shows it.
+//! Computes what the colour and the depth code of a pixel need from the end of a ray.
 
 use super::follow::End;
 use super::narrow::floor;
@@ -7,7 +7,7 @@ use super::setup::Exits;
 use crate::raymarch::{RayEnd, State};
 
 impl Exits {
-    /// The end of a ray as a picture shows it.
+    /// The end of a ray, with all that the colour and the depth code of a pixel need.
     pub fn seen(&self, beam: &Beam, end: &End) -> RayEnd {
         let (shadow, further) = match self.sun {
             Some(_) => self.shadow(beam, end),
@@ -24,8 +24,8 @@ impl Exits {
         }
     }
 
-    /// The vector to the hit from the centre of the sphere, or from the apex of the cone, in field units with 12 fraction bits; `None` if
-    /// the ray hit neither. From a centre, it is about as long as the radius. It is computed from 10 fraction bits of T.
+    /// The vector from the centre of a sphere, or from the apex of a cone, to the hit on its surface, in field units with 12 fraction bits;
+    /// `None` for any other end. For a sphere, the length of the vector is about the radius. Computed from T with 10 fraction bits.
     pub fn normal(&self, beam: &Beam, end: &End) -> Option<[i32; 3]> {
         let State::Hit(surface) = end.state else {
             return None;

@@ -19,22 +19,22 @@ use super::words::Words;
 use crate::error::{RenderError, whole_picture};
 use crate::raymarch::directions::{Directions, check};
 
-/// Largest number of spheres of a list, which rays meet in cones.
+/// Largest number of spheres of a list, for which rays are tested with cones.
 const SEEN_SPHERES: usize = if SPHERES.is_built { MAX_SPHERES } else { 0 };
 
-// Constants, so that the compiler parses the decimals: the soft core would take 6,000 cycles for each, in every frame.
+// These are constants, so that the compiler parses the decimals. The soft core would take 6,000 cycles for each decimal, in every frame.
 /// Field units per world unit of a sponge of five or six levels: the side of the smallest cells of six levels is 1/8 field unit.
 const DEEP_SPONGE: Q32_32 = Q32_32::lit("45.5625");
 /// Field units per world unit of an octahedron.
 const OCTAHEDRON: Q32_32 = Q32_32::lit("81");
 
-/// Position of an eye, and direction of its first ray.
+/// Position of an eye, direction of its first ray, and the empty prism around it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Eye {
     /// Position in field units, s13.12: in x, y and z, or along the first three diagonals of an octahedron.
     pub origin: [i32; 3],
-    /// Position from the solid's lower corner, s13.12, along each axis, and along each mirrored axis; for a repeated solid, the position in
-    /// the cell about the origin.
+    /// Position relative to the solid's lower corner, s13.12: along each axis, then along each mirrored axis. For a repeated solid, the
+    /// position in the cell around the origin.
     pub corners: [[i64; AXES]; 2],
     /// Direction D of the first pixel's ray along each axis, s2.30. The fourth number is not used: a ray's component along the fourth axis
     /// is the sum of the three others.
@@ -43,17 +43,17 @@ pub struct Eye {
     pub start: Start,
 }
 
-/// The empty prism around an eye, which all rays leave first. It has no borders if the eye is not in an empty prism, or if the eye is on a
-/// border, so that the prism is not the same for all rays. The rays then start at the near plane.
+/// The empty prism around an eye, which all rays leave first. The prism has no borders if the eye is not in an empty prism, or if the eye
+/// is on a border, because the prism is then not the same for all rays. Without borders, the rays start at the near plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Start {
-    /// The exit at which a ray leaves the prism.
+    /// Which of the exits along the axes leaves the prism.
     pub exit: Exit,
-    /// The sides of the prism along each axis, and along each mirrored axis.
+    /// The sides of the prism: along each axis, then along each mirrored axis.
     pub sides: [[Side; AXES]; 2],
 }
 
-/// The side of the empty prism around an eye at which rays leave it along an axis.
+/// A side of the empty prism around an eye, at which rays leave the prism along an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Side {
     /// Whether the prism has a border on this side.
@@ -62,19 +62,19 @@ pub struct Side {
     pub distance: i64,
     /// The interval beyond the border; 0 without a border.
     pub next: i32,
-    /// Whether a ray to this side points away from the solid.
+    /// Whether a ray in the direction of this side points away from the solid.
     pub is_away: bool,
     /// Whether the interval beyond the border is above the solid.
     pub is_last: bool,
 }
 
 impl Eye {
-    /// An eye at a position in field units, s13.12. The directions of its rays and its prism are not set.
+    /// An eye at a position in field units, s13.12. Does not set the direction of the first ray and the prism.
     pub fn at(origin: [i32; 3], solid: &Option<Solid>) -> Self {
         Self::placed(along(solid, origin.map(i64::from)), solid)
     }
 
-    /// As [`at`](Self::at), from the position along the axes of the solid.
+    /// As [`at`](Self::at), but `place` is the position along the axes of the solid.
     pub fn placed(place: [i64; AXES], solid: &Option<Solid>) -> Self {
         let half = solid.map_or([0; AXES], |solid| solid.side.map(|side| side / 2));
         let [x, y, z, _] = place.map(|part| part as i32);
@@ -89,14 +89,14 @@ impl Eye {
         }
     }
 
-    /// The position from the solid's centre along the first three axes, s13.12: in x, y and z, or along diagonals of an octahedron. In a
-    /// repeated solid, the position in the cell about the origin.
+    /// The position relative to the solid's centre along the first three axes, s13.12: along x, y and z, or along diagonals of an
+    /// octahedron. In a repeated solid, the position in the cell around the origin.
     pub fn place(&self) -> [i32; 3] {
         let [up, down] = &self.corners;
         [0, 1, 2].map(|axis: usize| ((up[axis] - down[axis]) / 2) as i32)
     }
 
-    /// The position from the solid's lower corner. `down` states which axes are mirrored.
+    /// The position relative to the solid's lower corner. `down` states which axes are mirrored.
     pub(super) fn corner(&self, down: &[bool; AXES]) -> [i64; AXES] {
         [0, 1, 2, 3].map(|axis: usize| self.corners[usize::from(down[axis])][axis])
     }
@@ -105,7 +105,7 @@ impl Eye {
 /// The frame constants of a field that is drawn with rays by exits (docs/raymarch-exits.md).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Exits {
-    /// Word lengths.
+    /// Word lengths of the numbers in a ray.
     pub words: Words,
     /// Width of the window in pixels.
     pub width: u32,
@@ -119,9 +119,9 @@ pub struct Exits {
     pub eyes: [Eye; 2],
     /// Change of D per pixel to the right and per pixel down, s2.30; the fourth numbers are not used.
     pub steps: [[i32; AXES]; 2],
-    /// Parameter of the near plane.
+    /// Parameter T of the near plane.
     pub near: i64,
-    /// Largest parameter of a hit.
+    /// Largest parameter T of a hit.
     pub far: i64,
     /// The flat solid or the lattice; `None` if there is only a list of spheres.
     pub solid: Option<Solid>,
@@ -129,12 +129,12 @@ pub struct Exits {
     pub sun: Option<Sun>,
     /// The spheres: first the sphere of a lattice, if any, then the spheres of a list.
     pub spheres: FixedSpheres,
-    /// The pixels at which each eye may see each sphere of the list in `spheres`; none for the right eye without stereo.
+    /// For each eye, a rectangle around the pixels that see each sphere of the list in `spheres`; empty for the right eye without stereo.
     pub rectangles: [[Rectangle; SEEN_SPHERES]; 2],
 }
 
 impl Exits {
-    /// Whether the rays of a field go by exits. Rays march in all other fields.
+    /// Whether a field is drawn with rays by exits. All other fields are drawn with marching rays.
     pub fn draws(field: &Field) -> bool {
         match field {
             Field::Primitive(_) => true,
@@ -142,7 +142,7 @@ impl Exits {
         }
     }
 
-    /// Computes the constants for a field, a camera and one of the [`SIZES`](crate::SIZES). A smooth union is drawn as a sharp one.
+    /// Computes the constants for a field, a camera and one of the [`SIZES`](crate::SIZES). A smooth union becomes a sharp union.
     ///
     /// # Errors
     /// [`RenderError::Size`] for another size, [`RenderError::Orthographic`], and [`RenderError::HalfWidth`] for a camera that is too
@@ -183,7 +183,7 @@ impl Exits {
         let eye = |i: usize| {
             let eye = Eye::at(views[i].eye().map(|x| units(x, scale) as i32), &solid);
             Eye {
-                // Only spheres of a list need the position in the world, so only gateware with such spheres reduces it to a cell.
+                // Only spheres of a list need the position in the world, so only gateware with such spheres reduces the position to a cell.
                 origin: match field.is_repeated_union() {
                     true => eye.origin,
                     false => eye.place(),
@@ -236,7 +236,8 @@ impl Exits {
         Ok(exits)
     }
 
-    /// Adds shadows to faces that the first light shines on, if the solid casts any. `direction` points to the light, s1.14, of length 1.
+    /// Adds shadows to the faces that are turned to the first light, if the solid casts shadows. `direction` is the unit vector to the
+    /// light, s1.14.
     #[must_use]
     pub fn with_shadows(self, direction: [i16; 3]) -> Self {
         let has_shadows = self.solid.is_some_and(|solid| solid.rule.has_shadows());
@@ -271,7 +272,7 @@ impl Exits {
         }
     }
 
-    /// Replaces the rays of all pixels by one ray with the direction D, s2.30.
+    /// Makes the rays of all pixels equal, with the direction D, s2.30.
     pub fn aim(&mut self, direction: [i32; 3]) {
         self.steps = Default::default();
         let direction = along(&self.solid, direction.map(i64::from)).map(|part| part as i32);
@@ -318,8 +319,8 @@ impl Exits {
         }
     }
 
-    /// Whether an eye is inside a sphere or the flat solid, and not on its surface: it is in the solid both for rays that point up and for
-    /// rays that point down.
+    /// Whether an eye is inside a sphere or the flat solid, and not on the surface. Inside means in the solid both for rays that point up
+    /// and for rays that point down.
     pub(in crate::raymarch) fn is_inside(&self, eye: usize) -> bool {
         let eye = &self.eyes[eye];
         let in_solid = |solid: &Solid| {
@@ -351,7 +352,7 @@ impl Exits {
 }
 
 impl Start {
-    /// The prism without a flat solid: all rays point away.
+    /// The prism for a field without a flat solid: all rays point away.
     fn away() -> Self {
         let side = Side {
             is_away: true,
@@ -414,8 +415,8 @@ impl Start {
     }
 }
 
-/// The direction of the first pixel's ray, chosen so that the ray of the pixel `middle` is rounded to nearest: the error from the rounded
-/// steps grows with the distance from this pixel.
+/// The direction of the first pixel's ray, chosen so that the ray of the pixel `middle` is rounded to nearest. The rounded steps cause an
+/// error that grows with the distance from this pixel.
 fn first(
     rays: &Directions,
     eye: usize,
@@ -435,8 +436,8 @@ fn first(
     })
 }
 
-/// The components of a vector along the axes of a solid. The axes of an octahedron are its diagonals divided by 4, so that no component
-/// exceeds the range of x, y and z; other solids have no fourth axis.
+/// The components of a vector along the axes of a solid. For an octahedron, the components along its diagonals are divided by 4, so that
+/// they do not exceed the range of x, y and z. Other solids have no fourth axis.
 fn along(solid: &Option<Solid>, [x, y, z]: [i64; 3]) -> [i64; AXES] {
     match solid.map(|solid| solid.rule) {
         Some(Rule::Octahedron) => {
@@ -446,8 +447,8 @@ fn along(solid: &Option<Solid>, [x, y, z]: [i64; 3]) -> [i64; AXES] {
     }
 }
 
-/// The flat solid or lattice of a field, `None` for a list of spheres, and the field units per world unit. `world` is the field as marching
-/// rays use it.
+/// The flat solid or lattice of a field (`None` for a list of spheres), and the field units per world unit. `world` is the representation
+/// of the field for marching rays.
 fn placed(primitive: &Primitive, world: &Placed<Kind>) -> (Option<Solid>, Q32_32) {
     let constants = match &world.solid {
         Kind::Flat(flat) => Some(flat.constants()),

@@ -1,4 +1,4 @@
-//! Hard shadows: from a hit on a face that the first light shines on, a shadow ray goes to the light.
+//! Hard shadows: a shadow ray goes to the first light from a hit on a face that is turned to this light.
 
 use glint_core::field::Surface;
 
@@ -8,11 +8,11 @@ use super::ray::{Beam, Way};
 use super::setup::Exits;
 use crate::raymarch::State;
 
-/// A hit is rounded along the normal of its face to a multiple of 2^`GRID`, with 12 fraction bits: the side of a sponge's smallest cells.
-/// All faces that can be in shadow are at such multiples from the solid's lower corner.
+/// A hit is rounded along the normal of its face to a multiple of 2^`GRID`, in units with 12 fraction bits. This is the side of a sponge's
+/// smallest cells. All faces that can be in shadow are at such multiples from the solid's lower corner.
 const GRID: u32 = 9;
 
-/// Number of bits of a hit's coordinate from the solid's lower corner.
+/// Number of bits of a hit's coordinate relative to the solid's lower corner.
 const SPOT: u32 = 19;
 
 impl Exits {
@@ -30,8 +30,8 @@ impl Exits {
         (matches!(found.state, State::Hit(_)), found.steps)
     }
 
-    /// The shadow ray from a hit to the first light, and its origin from the solid's lower corner. It starts on the plane of the face, in
-    /// the interval before the plane. `None` for an end that cannot be in shadow.
+    /// The shadow ray from a hit to the first light, and the ray's origin relative to the solid's lower corner. The ray starts on the plane
+    /// of the face, in the interval in front of the plane. `None` for an end that cannot be in shadow.
     fn light_ray(&self, beam: &Beam, end: &End) -> Option<(Beam, [i64; AXES])> {
         let sun = self.sun.as_ref()?;
         let solid = self

@@ -4,17 +4,18 @@
 //! x² + y² = k²·z² about the apex at the solutions of A·T² + 2·B·T + C = 0, where A = Dx² + Dy² − k²·Dz², B = qx·Dx + qy·Dy − k²·qz·Dz and
 //! C = qx² + qy² − k²·qz². Outside of the double cone C is positive, and B² − A·C is the product of two linear functions of D, those of the
 //! tangent planes through the eye: f² − a² with f = k·(qz·Dr − E·Dz) and a = √C·Dφ, where E is the eye's distance from the axis, r the
-//! direction from the axis to the eye, and φ the direction around the axis. With f > 0 the ray meets the lower half first at T = C/(ρ − B),
-//! where ρ² = f² − a²: as for spheres, the root is in the divisor. −B is the divisor's addend in place of f.
+//! direction from the axis to the eye, and φ the direction around the axis. With f > 0 the ray first meets the lower half at T = C/(ρ − B),
+//! where ρ² = f² − a². As for spheres, the root is in the divisor, but the divisor's addend is −B in place of f.
 //!
-//! An eye above the apex in the upper half sees the lower half all around, with no outline. There C is negative, and the ray meets the
-//! lower half at T = −C/(B − ρ), where ρ² = f² + a². An eye in the lower half does not see the lateral surface. Only for an eye close to the
-//! surface of the upper half are ρ and B nearly equal.
+//! An eye above the apex in the upper half sees the lower half on all sides, with no outline. There C is negative, and the ray meets the
+//! lower half at T = −C/(B − ρ), where ρ² = f² + a². An eye in the lower half does not see the lateral surface. Only for an eye close to
+//! the surface of the upper half are ρ and B nearly equal.
 //!
-//! The base is a disc, which an eye below its plane sees in a cone, as the disc of a sphere in the near plane. The lateral surface is before
-//! the plane for an eye above the plane, and behind it for an eye below.
+//! The base is a disc, which an eye below the disc's plane sees in a cone, like the disc of a sphere in the near plane. The lateral surface
+//! is in front of the plane for an eye above the plane, and behind the plane for an eye below.
 //!
-//! The section by the near plane has the points x² + y² < k²·z² of the plane, again functions that are linear in a pixel's column and row.
+//! The section by the near plane consists of the points of the plane with x² + y² < k²·z², where x, y and z are again linear functions of a
+//! pixel's column and row.
 
 use glint_core::field::FixedCone;
 
@@ -24,10 +25,10 @@ use super::cones::{
 };
 use super::vectors::{Scaled, Vector, bits, product, unit};
 
-/// Bits of the squares of radius and height. Only their ratio counts.
+/// Number of bits of the squares of radius and height, of which only the ratio matters.
 const RATIO: i32 = 36;
 
-/// Smallest distance from the surface of the upper half, 12 fraction bits: an eye that is closer is moved outwards.
+/// Smallest distance of an eye from the surface of the upper half, 12 fraction bits. A closer eye is moved outwards.
 const BESIDE: i64 = 1 << 8;
 
 /// The unit vectors of the axes.
@@ -37,8 +38,8 @@ const UP: Vector = [0, 0, 1 << 30];
 const DOWN: Vector = [0, 0, -1 << 30];
 
 impl Sight {
-    /// Computes the cones of a solid cone, whose number and rectangle are those of `cone`. `is_cut` states whether the near plane may cut
-    /// it.
+    /// Computes the cones of a solid cone and passes them to `take`. `cone` has the number and the rectangle of the solid cone. `is_cut`
+    /// states whether the near plane may cut the solid cone.
     // Not inlined, because few frames have a solid cone.
     #[inline(never)]
     pub(super) fn solid_cone(
@@ -71,9 +72,9 @@ impl Sight {
         let mut to_plane = Scaled::new(up.unsigned_abs().into(), -12);
         let (axis, halvings) = if up >= 0 {
             cone.kind = ConeKind::Base;
-            // Smaller by 2^−17, so that faces behind the plane are also behind it after rounding.
+            // Reduces the distance by a relative 2^−17, so that faces behind the plane remain behind the plane after rounding.
             to_plane = to_plane.by(Scaled::new((1 << 17) - 1, -17));
-            // Where the ray meets the plane, in radii, times D's component along z.
+            // The point where the ray meets the plane, in radii, times D's component along z.
             let axes = [[up, 0, x], [0, up, y]];
             let inverse_radius = inverse(shape.radius.unsigned_abs().into());
             let [a, b] = axes.map(|axis| (unit(axis.map(i64::from)), length(&axis)));
@@ -93,7 +94,7 @@ impl Sight {
         cone.distance = distance(to_plane.halved(halvings));
     }
 
-    /// Sets the constants of the lateral surface. Returns `false` for an eye that does not see it.
+    /// Sets the constants of the lateral surface. Returns `false` for an eye that does not see the surface.
     fn lateral(&self, shape: &FixedCone, cone: &mut Cone, middle: &Pixel) -> bool {
         let q = self.beside_surface(shape);
         let [x, y, z] = q.map(i64::from);
@@ -112,7 +113,7 @@ impl Sight {
             -1 if z > 0 => ConeKind::Around,
             _ => return false,
         };
-        // All functions are divided by the length of the vector whose product with D is −B.
+        // All functions are divided by the length of the vector whose scalar product with D is −B.
         let lost = (bits(towards.iter().fold(0, |all, x| all | x.unsigned_abs())) - 31).max(0);
         let square = towards
             .map(|x| (x.unsigned_abs() >> lost).pow(2))
@@ -136,7 +137,8 @@ impl Sight {
             0 => (X, Y),
             _ => (unit([z * x, z * y, -from_axis]), unit([-y, x, 0])),
         };
-        // The root is as large as its words allow within the rectangle, and then divided by a power of two.
+        // The number under the root is scaled up as far as its word allows within the rectangle, and the root is then divided by a power of
+        // two.
         let [f, a] = [(&f, along), (&a, around)].map(|(axis, factor)| Function {
             axis,
             factor,
@@ -149,7 +151,7 @@ impl Sight {
                 .min((STEP + MOST_SHIFT) as i32 - bits(self.largest_change(&a)))
                 .min(MOST_SIDE - 1 - a.factor.log2())
                 .min(SHARE as i32);
-            // The share is at most 1/2.
+            // `share`, by which the root is multiplied, is at most 1/2.
             let addend = Function {
                 axis: &forward,
                 factor: power(doublings.min(1) - 1),
@@ -174,7 +176,7 @@ impl Sight {
         true
     }
 
-    /// The vector from the apex to the eye, or to a place nearby that is not too close to the surface of the upper half.
+    /// The vector from the apex to the eye. An eye that is too close to the surface of the upper half is moved outwards.
     fn beside_surface(&self, shape: &FixedCone) -> Vector {
         let [x, y, z] = self.origin;
         let q = [x, y, z - shape.half];
@@ -201,7 +203,7 @@ impl Sight {
         let z = z - shape.half;
         let near = self.near.fixed(12).unsigned_abs();
         let [radius, height] = [shape.radius, 2 * shape.half].map(|x| u64::from(x.unsigned_abs()));
-        // Scales radius and height so that all functions are below 1.
+        // Scales radius and height so that the values of all functions are below 1.
         let most = |sum: u32| u64::from(sum) + 4 * near;
         let sum =
             height * most(x.unsigned_abs() + y.unsigned_abs()) + radius * most(z.unsigned_abs());
@@ -222,7 +224,7 @@ impl Sight {
         cone.distance = (0, 0);
     }
 
-    /// Sets the forward function to the product of D and a unit vector.
+    /// Sets the function `forward` to the scalar product of D and a unit vector.
     fn set_forward(&self, cone: &mut Cone, middle: &Pixel, axis: &Vector, halvings: u32) {
         let one = Function {
             axis,
@@ -242,7 +244,8 @@ impl Sight {
         }
     }
 
-    /// The bitwise OR of a function's magnitudes in the corners of a cone's rectangle, 30 fraction bits.
+    /// The bitwise OR of a function's magnitudes in the corners of a cone's rectangle, which has as many bits as the largest magnitude; 30
+    /// fraction bits.
     fn largest(&self, cone: &Cone, function: &Function) -> u64 {
         let [columns, rows] = [cone.rectangle.columns, cone.rectangle.rows];
         let corners = [0, 1, 2, 3].map(|i: usize| self.pixel([columns[i % 2], rows[i / 2]]));
@@ -268,7 +271,7 @@ impl Function<'_> {
     }
 }
 
-/// A power of two.
+/// 2^`exponent`.
 const fn power(exponent: i32) -> Scaled {
     Scaled::new(1, exponent)
 }

@@ -10,8 +10,8 @@ use super::words::Inverse;
 const LENGTH: i32 = 22;
 /// Fraction bits of the number under the root.
 const SQUARE: i32 = 30;
-/// A ray meets a sphere if the number under the root exceeds 2^−`LEAST`. With this margin a tangent ray misses, however its numbers have
-/// been rounded.
+/// A ray meets a sphere if the number under the root exceeds 2^−`LEAST`. This margin exceeds all rounding errors, so that a tangent ray
+/// always misses.
 const LEAST: i32 = 20;
 /// Fraction bits of the mantissa of a reciprocal.
 const MANTISSA: i32 = 18;
@@ -26,8 +26,8 @@ pub struct Met {
 }
 
 impl Exits {
-    /// The first sphere of the list that a ray meets up to the far limit, and the number of tested cones. Of several spheres at one
-    /// parameter, the first in the list counts.
+    /// The nearest sphere of the list that a ray meets up to the far limit, and the number of tested cones. Of several spheres at the same
+    /// parameter, returns the first in the list.
     pub fn meet(&self, cones: &[Cones; 2], beam: &Beam) -> (Option<Met>, u32) {
         let mut best: Option<Met> = None;
         let mut tests = 0;
@@ -59,7 +59,7 @@ impl Exits {
         (best.filter(|met| met.t <= self.far), tests)
     }
 
-    /// The parameter at which a ray crosses the plane of a solid cone's base; `i64::MAX` if it never does.
+    /// The parameter at which a ray crosses the plane of a solid cone's base; `i64::MAX` for a ray that does not cross the plane.
     #[inline(never)]
     fn crossing(&self, beam: &Beam, cone: &Cone) -> i64 {
         let forward = cone.forward_at(beam.column, beam.row);
@@ -69,7 +69,8 @@ impl Exits {
         }
     }
 
-    /// The parameter at which a ray in a cone meets the sphere or the face; `None` if it does not, or before the near plane.
+    /// The parameter at which a ray in a cone meets the sphere or the face; `None` if the ray misses, or if the point is in front of the
+    /// near plane.
     fn meet_cone(&self, beam: &Beam, cone: &Cone) -> Option<i64> {
         let (column, row) = (beam.column, beam.row);
         let sides = cone.sides.map(|side| side.at(column, row, cone.shift));
@@ -78,7 +79,7 @@ impl Exits {
             return None;
         }
         let forward = cone.forward_at(column, row);
-        // The squares omit the square of the bits after the first 18.
+        // The squares omit the square of the bits after the first 18 bits.
         let fraction = self.words.outline as i32;
         let cut = (fraction - 16).max(0) as u32;
         let square = |x| squared(floor(x, FRACTION as i32 - fraction), cut);
@@ -86,11 +87,11 @@ impl Exits {
         let rounded = |rest| floor(rest, 2 * fraction - SQUARE);
         let (rest, least) = match cone.kind {
             ConeKind::Limit => return None,
-            // Rounded down; an integer becomes the next lower integer.
+            // Rounded to the next lower integer, even if the number is an integer.
             ConeKind::Sphere => (rounded(square(forward) - a - b - 1), SQUARE - LEAST),
             ConeKind::Base | ConeKind::Section => (rounded(square(forward) - a - b - 1), 0),
             ConeKind::Lateral => (rounded(square(forward) - a - 1), 0),
-            // There is no outline.
+            // The surface has no outline, so the number is never negative.
             ConeKind::Around => (rounded(a + b).max(1), 0),
         };
         if forward < 0 || rest >> least <= 0 {
@@ -106,8 +107,8 @@ impl Exits {
             _ => forward,
         };
         let addend = floor(addend, FRACTION as i32 - LENGTH);
-        // The divisor is below 4; it has 22 fraction bits, and stands for the middle of its interval. The root is rounded down, the divisor
-        // up.
+        // The divisor is below 4, has 22 fraction bits, and represents the middle of its rounding interval. The root is rounded down, the
+        // divisor up.
         let part = match cone.kind {
             ConeKind::Around => -(cone.share * root),
             _ => cone.share * root,
@@ -129,7 +130,7 @@ impl Exits {
             self.words.inverse as i32 - MANTISSA,
         );
         let (distance, exponent) = cone.distance;
-        // The reciprocal of a quarter of the divisor.
+        // `inverse` is the reciprocal of a quarter of the divisor, hence the −2.
         let bits = exponent as i32 - DISTANCE_OFFSET + inverse.exponent - 2 - MANTISSA;
         self.words.parameter_of(distance * mantissa, -bits)
     }

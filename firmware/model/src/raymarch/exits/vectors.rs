@@ -1,6 +1,6 @@
 //! Vectors of integers, and positive numbers with an exponent, for the constants of a frame.
 //!
-//! The soft core computes cones mostly in the functions of this module. They are not inlined, so that their code stays in the
+//! On the soft core, most of the time for cones is spent in these functions. They are not inlined, so that their code stays in the
 //! instruction cache, and they do not divide, because the soft core has no 64-bit division.
 
 use glint_core::root::inverse_root;
@@ -8,7 +8,7 @@ use glint_core::vector::{self, cross, dot};
 
 use super::narrow::nearest;
 
-/// A vector. A *unit vector* has length 1, with 30 fraction bits.
+/// A vector of integers. A *unit vector* has length 1 and 30 fraction bits.
 pub(super) type Vector = [i32; 3];
 
 /// Fraction bits of a unit vector.
@@ -20,7 +20,7 @@ pub(super) fn product(a: &Vector, b: &Vector) -> i64 {
     dot(*a, *b)
 }
 
-/// The unit vector in the direction of a vector; for the zero vector, along the z axis.
+/// The unit vector in the direction of a vector; for the zero vector, the unit vector along the z axis.
 pub(super) fn unit(vector: [i64; 3]) -> Vector {
     vector::unit::<UNIT>(vector).unwrap_or([0, 0, 1 << UNIT])
 }
@@ -34,14 +34,14 @@ pub(super) fn perpendicular(a: &Vector, b: &Vector) -> Vector {
     })
 }
 
-/// The axis along which a vector is shortest.
+/// The axis along which the vector's component has the smallest magnitude.
 fn shortest_axis(vector: &Vector) -> Vector {
     let sizes = vector.map(i32::abs);
     let axis = (0..3).min_by_key(|&i| sizes[i]).unwrap_or_default();
     [0, 1, 2].map(|i: usize| i32::from(i == axis))
 }
 
-/// [`nearest`], as a function that is not inlined.
+/// [`nearest`], but not inlined.
 #[inline(never)]
 pub(super) const fn rounded(x: i64, bits: i32) -> i64 {
     nearest(x, bits)
@@ -52,7 +52,7 @@ pub(super) const fn rounded(x: i64, bits: i32) -> i64 {
 pub(super) const fn bits(x: u64) -> i32 {
     let (high, low) = ((x >> 32) as u32, x as u32);
     let (mut word, mut bits) = if high == 0 { (low, 0) } else { (high, 32) };
-    // The soft core has no instruction that counts zeros.
+    // The soft core has no instruction that counts leading zeros.
     let mut step = 16;
     while step > 0 {
         if word >> step != 0 {
@@ -64,7 +64,7 @@ pub(super) const fn bits(x: u64) -> i32 {
     bits + word as i32
 }
 
-/// A non-negative floating-point number: a mantissa of 31 bits, rounded down, times 2^`exponent`. The mantissa 0 is the number 0.
+/// A non-negative floating-point number: a mantissa of 31 bits, rounded down, times 2^`exponent`. The mantissa is 0 only for the number 0.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scaled {
     mantissa: u32,
@@ -97,7 +97,8 @@ impl Scaled {
         }
     }
 
-    /// The reciprocal of the square root of x·2^`exponent`, x at least 1 and the exponent even. Its relative error is at most 5·10^−9.
+    /// The reciprocal of the square root of x·2^`exponent`, for an x of at least 1 and an even exponent. The relative error is at most
+    /// 5·10^−9.
     #[inline(never)]
     pub(super) fn inverse_root(x: u64, exponent: i32) -> Self {
         // The argument is in [1, 4), with 30 fraction bits: x is this integer times 2^(32 − shift).
@@ -112,7 +113,7 @@ impl Scaled {
     /// The product.
     pub(super) const fn by(self, factor: Self) -> Self {
         let product = self.mantissa as u64 * factor.mantissa as u64;
-        // A product of 61 or 62 bits.
+        // The product has 61 or 62 bits.
         let excess = Self::BITS - 1 + (product >> (2 * Self::BITS - 1)) as i32;
         Self {
             mantissa: (product >> excess) as u32,
@@ -127,7 +128,7 @@ impl Scaled {
         }
     }
 
-    /// The base-2 logarithm, rounded down; for 0, far below the logarithm of any other number.
+    /// The base-2 logarithm, rounded down; for 0, a number far below all other logarithms.
     pub(super) const fn log2(self) -> i32 {
         self.exponent + Self::BITS - 1
     }
@@ -142,10 +143,10 @@ impl Scaled {
         rounded(self.mantissa as i64, exponent - self.exponent)
     }
 
-    /// The product with x (60 fraction bits), with 30 fraction bits, rounded to nearest.
+    /// The product with x, which has 60 fraction bits, rounded to nearest, to 30 fraction bits.
     #[inline(never)]
     pub(super) const fn times(self, x: i64) -> i64 {
-        // The product of 95 bits without its lowest 32 bits.
+        // The product of 95 bits, without the lowest 32 bits.
         let low = (self.mantissa as u64 * (x as u32 as u64)) >> 32;
         let high = self.mantissa as i64 * (x >> 32);
         rounded(high + low as i64, -2 - self.exponent)

@@ -2,7 +2,7 @@
 
 use super::narrow::{nearest, shifted};
 
-/// Integer bits of the parameter T: depths up to 2^11 field units, times 2^e with e at most 3.
+/// Number of integer bits of the parameter T, for depths up to 2^11 field units, times 2^e with e at most 3.
 const PARAMETER_INTEGER: u32 = 14;
 
 /// Word lengths of rays by exits.
@@ -12,13 +12,13 @@ pub struct Words {
     pub component: u32,
     /// Fraction bits of the magnitude of a direction's component in the product T·D, 8 to 24.
     pub direction: u32,
-    /// Fraction bits of the mantissa of a reciprocal, 8 to 24; up to 22 with the errors of the gateware's table.
+    /// Fraction bits of the mantissa of a reciprocal, 8 to 24; with at most 22, the errors are those of the gateware's table.
     pub inverse: u32,
     /// Fraction bits of the parameter T, 8 to 16.
     pub parameter: u32,
     /// Fraction bits of the linear functions of a cone, for spheres of a list, 12 to 22.
     pub outline: u32,
-    /// Fraction bits of q·D, for a sphere of a lattice at q from the ray's point, 8 to 20.
+    /// Fraction bits of q·D, where q is the vector from the centre of a lattice's sphere to the ray's point, 8 to 20.
     pub along: u32,
 }
 
@@ -33,22 +33,22 @@ impl Words {
         along: 14,
     };
 
-    /// Truncates a component's magnitude, an odd number, u0.28, to [`component`](Self::component) fraction bits, and returns the middle of
-    /// the interval.
+    /// Truncates a component's magnitude, an odd number in u0.28, to [`component`](Self::component) fraction bits, and returns the middle
+    /// of the truncation interval.
     pub(super) const fn component_of(&self, magnitude: u32) -> u32 {
         let cut = 27 - self.component;
         (magnitude >> 1 >> cut << 1 | 1) << cut
     }
 
-    /// The parameter of a ray at a distance along an axis: the distance, of 25 bits with `fraction` fraction bits, times a reciprocal.
-    /// Rounded down, saturated.
+    /// The parameter of a ray at a distance along an axis: the distance, of 25 bits with `fraction` fraction bits, times the reciprocal of
+    /// the direction's component. Rounded down and saturated.
     pub(super) const fn divided(&self, distance: i64, fraction: u32, inverse: Inverse) -> i64 {
         let Inverse { mantissa, exponent } = inverse;
         let bits = fraction as i32 + self.inverse as i32 - exponent;
         self.parameter_of(distance * mantissa as i64, bits)
     }
 
-    /// Converts a parameter x with `fraction` fraction bits to the format of T. Rounded down, saturated.
+    /// Converts a parameter x with `fraction` fraction bits to the format of T. Rounded down and saturated.
     pub(super) const fn parameter_of(&self, x: i64, fraction: i32) -> i64 {
         let bits = self.parameter as i32 - fraction;
         shifted(x, bits, PARAMETER_INTEGER + self.parameter)
@@ -57,7 +57,7 @@ impl Words {
 
 /// The reciprocal of a number.
 ///
-/// Mantissas are around 1, so that a product with a mantissa is the other factor plus its product with a signed number below 1/2.
+/// Mantissas are close to 1, so that the gateware can compute x·mantissa as x + x·(mantissa − 1), with |mantissa − 1| below 1/2.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Inverse {
     /// The mantissa, from 3/4 to below 3/2, with the fraction bits of [`Words::inverse`].
@@ -73,7 +73,7 @@ impl Inverse {
         (self.exponent as u32 / 8) << 30 | self.mantissa << (self.exponent % 8)
     }
 
-    /// The reciprocal of a [`word`](Self::word). Its mantissa may be larger, with a smaller exponent.
+    /// The reciprocal that a [`word`](Self::word) represents. The mantissa may be larger than the original one, with a smaller exponent.
     pub const fn of_word(word: u32) -> Self {
         Self {
             mantissa: word & ((1 << 30) - 1),
@@ -112,8 +112,8 @@ const REST: u32 = 24 - INDEX;
 /// Fraction bits of the entries of [`TABLE`].
 const ENTRY: u32 = 24;
 
-/// 1/(1 + i/2^10), u1.24, and its decrease to the next entry. The value is lower than the nearest value by half of the largest error of
-/// the interpolation after it, so that errors have both signs.
+/// Entry i: 1/(1 + i/2^10), u1.24, and the decrease to the next entry. The value is reduced by half of the largest error of the
+/// interpolation between entries i and i + 1, so that errors have both signs.
 const TABLE: [(u32, u32); 1 << INDEX] = {
     let mut table = [(0, 0); 1 << INDEX];
     let mut i = 0;
@@ -131,7 +131,7 @@ const fn point(i: u64) -> u32 {
     ((dividend + divisor / 2) / divisor) as u32
 }
 
-/// Half of the largest error of the interpolation after entry i, to nearest: 2/(1 + i/2^10)^3 units.
+/// Half of the largest error of the interpolation between entries i and i + 1, rounded to nearest: 2/(1 + i/2^10)^3 units.
 const fn excess(i: usize) -> u32 {
     match i {
         0..=103 => 2,
@@ -172,7 +172,7 @@ mod tests {
                 let Inverse { mantissa, exponent } = Inverse::of(x, &words);
                 let found = f64::from(mantissa) * f64::from(exponent - inverse as i32 - 28).exp2();
                 let error = (f64::from(x) * found - 1.0).abs();
-                // Half a unit of a mantissa of at least 3/4, and the table's error.
+                // The relative error of half a unit of a mantissa, which is at least 3/4, plus the error of the table.
                 let limit = f64::from(-(inverse as i32)).exp2() / 1.5 + 3e-7;
                 assert!(error < limit, "{x}: {error}");
                 assert!(
