@@ -1,8 +1,8 @@
-//! Bit-exact model of the triangle engine: from a mesh to pixels.
+//! Bit-exact model of the triangle engine, which draws the pixels of a mesh.
 //!
-//! Vertices are processed by [`vertex`], and triangles by [`setup`] and [`raster`]. Triangles that cross the guard band
-//! or the near plane are first cut by [`clip`]. [`render()`] draws a mesh; [`descriptor`] has the records of triangles that the engine
-//! writes to memory; [`vertex_cache`] models the cache that determines which vertices the engine fetches.
+//! Vertices are processed by [`vertex`], and triangles by [`setup`] and [`raster`]. Triangles that cross the guard band or the near plane
+//! are first cut by [`clip`]. [`render()`] draws a mesh. [`descriptor`] has the records of triangles that the engine writes to memory.
+//! [`vertex_cache`] models the cache that determines which vertices the engine fetches.
 
 mod classify;
 pub mod clip;

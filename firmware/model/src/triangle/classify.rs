@@ -1,21 +1,21 @@
-//! The path of a triangle after the vertex stage.
+//! The next step for a triangle after the vertex stage: cull, set up or clip.
 
 use crate::triangle::mesh_setup::MeshSetup;
 use crate::triangle::vertex::{Projected, ScreenVertex};
 
-/// The path of a triangle after the vertex stage.
+/// The next step for a triangle after the vertex stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Path<'a> {
-    /// Not drawn, because the triangle lies wholly beyond one side of the picture or behind the near plane.
+    /// Not drawn: the triangle is completely beyond one side of the picture, or behind the near plane.
     Unseen,
-    /// Drawn whole: goes to the triangle setup.
+    /// Passed to the triangle setup without clipping.
     Regular([&'a ScreenVertex; 3]),
-    /// Clipped first, because the triangle crosses the near plane or leaves the guard band.
+    /// Clipped before the setup, because the triangle crosses the near plane or leaves the guard band.
     Exception,
 }
 
 impl<'a> Path<'a> {
-    /// The path of a triangle with these vertices.
+    /// Classifies the triangle with these vertices.
     #[inline]
     pub fn of(frame: &MeshSetup, vertices: [&'a Projected; 3]) -> Self {
         match vertices.map(Projected::place) {
@@ -29,7 +29,7 @@ impl<'a> Path<'a> {
     }
 }
 
-/// Whether all vertices lie beyond the same side of the picture.
+/// Whether all vertices are beyond the same side of the picture.
 #[inline]
 fn off_screen(frame: &MeshSetup, [a, b, c]: [&ScreenVertex; 3]) -> bool {
     // The bitwise AND of numbers is negative if all of them are negative.

@@ -1,8 +1,8 @@
 //! The clipper: homogeneous Sutherland–Hodgman in integers, before the perspective division.
 //!
-//! It cuts triangles that cross the near plane or leave the guard band, or, as an option, all triangles that leave the view volume.
-//! The intersection of an edge with a plane is the exact point, rounded. It does not depend on the direction of the edge, so two
-//! triangles that share an edge get the same vertex.
+//! The clipper cuts triangles that cross the near plane or leave the guard band, or, as an option, all triangles that leave the view
+//! volume. The intersection of an edge with a plane is the exact point, rounded. The result does not depend on the direction of the edge,
+//! so two triangles that share an edge get the same vertex.
 
 use glint_core::camera::Projection;
 use heapless::Vec;
@@ -16,12 +16,12 @@ use crate::triangle::volume::Volume;
 /// 9, but rounding may make a polygon concave.)
 pub const MAX_VERTICES: usize = 28;
 
-/// A vertex that the clipper interpolates. It is a trait, so that the code for triangles without textures interpolates no texture
+/// A vertex that the clipper interpolates. This is a trait, so that the code for triangles without textures does not interpolate texture
 /// coordinates.
 pub trait Cut: Copy + Default {
     /// Its position and light.
     fn vertex(&self) -> &CameraVertex;
-    /// The vertex at `part`/`whole` of the way to `other`; `vertex` is the position and light of the result.
+    /// The vertex at the fraction `part`/`whole` of the way from `self` to `other`; `vertex` is the position and light of the result.
     fn towards(&self, other: &Self, vertex: CameraVertex, part: u64, whole: u64) -> Self;
 }
 
@@ -59,7 +59,7 @@ impl Cut for TexturedVertex {
     }
 }
 
-/// A triangle after clipping: a polygon.
+/// The polygon that remains of a triangle after clipping.
 #[derive(Clone, Debug, Default)]
 pub struct Polygon<C = CameraVertex> {
     vertices: Vec<C, MAX_VERTICES>,
@@ -72,7 +72,7 @@ impl<C: Cut> Polygon<C> {
     }
 
     fn push(&mut self, vertex: C) {
-        // Clipping never makes more vertices than fit.
+        // A clipped triangle has at most `MAX_VERTICES` vertices, so the push does not fail.
         let _ = self.vertices.push(vertex);
     }
 }
@@ -97,13 +97,13 @@ pub enum Plane {
     Near,
     /// Far plane; inside is Z ≤ far.
     Far,
-    /// Left side of the picture; inside is to the right.
+    /// Left side of the picture; inside is at or to the right of this side.
     Left,
-    /// Right side of the picture; inside is to the left.
+    /// Right side of the picture; inside is at or to the left of this side.
     Right,
-    /// Top side of the picture; inside is at or below it.
+    /// Top side of the picture; inside is at or below this side.
     Top,
-    /// Bottom side of the picture; inside is at or above it.
+    /// Bottom side of the picture; inside is at or above this side.
     Bottom,
 }
 
@@ -137,7 +137,7 @@ impl Plane {
         }
     }
 
-    /// Writes the part of `polygon` inside the plane to `left`. If the whole polygon is inside, writes nothing and returns false.
+    /// Writes the part of `polygon` inside the plane to `left`. If the whole polygon is inside, writes nothing and returns `false`.
     fn cut<C: Cut>(self, frame: &MeshSetup, polygon: &Polygon<C>, left: &mut Polygon<C>) -> bool {
         let vertices = polygon.vertices();
         let Some(mut from) = vertices.last() else {
@@ -169,8 +169,8 @@ impl Plane {
         true
     }
 
-    /// The intersection of the plane with the edge from the vertex `from` inside, at distance `da`, to the vertex `to`
-    /// outside, at distance `db`.
+    /// The intersection of the plane with the edge from `from` to `to`. `from` is inside at the distance `da`, and `to` is outside at the
+    /// distance `db`.
     fn intersection<C: Cut>(self, frame: &MeshSetup, from: &C, da: i64, to: &C, db: i64) -> C {
         let (part, whole) = (da.unsigned_abs(), da.abs_diff(db));
         let (a, b) = (from.vertex(), to.vertex());
@@ -191,7 +191,7 @@ impl Plane {
     }
 }
 
-/// The homogeneous coordinate that divides X and Y, 37 fraction bits.
+/// The homogeneous coordinate by which X and Y are divided, 37 fraction bits.
 const fn divisor(frame: &MeshSetup, vertex: &CameraVertex) -> i64 {
     match frame.projection {
         Projection::Perspective => vertex.z,
@@ -205,10 +205,10 @@ fn half_pixels(frame: &MeshSetup, x: i64) -> i64 {
     x << (24 - frame.scale_shift)
 }
 
-/// Whether a triangle lies wholly beyond one side of the window. In perspective the plane through this side and the eye separates the
+/// Whether a triangle is completely beyond one side of the window. In perspective the plane through this side and the eye separates the
 /// triangle from the window, so the test is also valid for vertices behind the eye.
 ///
-/// This fast test replaces the clipping of such a triangle, which would cover no pixel.
+/// With this fast test, such a triangle is not clipped, which would leave no pixel of it.
 pub fn off_picture<C: Cut>(frame: &MeshSetup, triangle: &[C; 3]) -> bool {
     let off = |x: fn(&CameraVertex) -> i64, size: u32, middle: u32| {
         let [first, last] = [2 * middle, 2 * (size - middle)].map(i64::from);
@@ -234,8 +234,8 @@ pub fn clip<C: Cut>(frame: &MeshSetup, triangle: [C; 3]) -> Polygon<C> {
     polygon
 }
 
-/// Clips an edge to the volume of the frame; `None` if nothing remains. The new ends equal the vertices of the clipped triangles that have
-/// this edge.
+/// Clips an edge to the volume of the frame; `None` if no part of the edge is inside. The new ends equal the vertices of the clipped
+/// triangles with this edge.
 pub fn clip_edge(
     frame: &MeshSetup,
     [mut a, mut b]: [CameraVertex; 2],
@@ -288,7 +288,7 @@ mod tests {
             state >> (64 - bits)
         };
         for round in 0..200_000u32 {
-            // Half of the rounds use small numbers, for which many quotients are ties.
+            // Half of the iterations use small numbers, for which many quotients are ties.
             let (wide, long) = if round % 2 == 0 { (4, 5) } else { (61, 44) };
             let whole = random(wide) + 1;
             let part = random(wide) % (whole + 1);

@@ -22,7 +22,7 @@ pub use contents::Contents;
 pub const GROUP: i32 = constants::GROUP as i32;
 
 /// A triangle after its setup, or a piece of a line, packed into 32-bit words: first the words of a flat triangle without a texture, then
-/// the texture, then the planes of light. A gateware reads only the parts in its [`Layout`].
+/// the texture, then the planes of light. A build of the gateware reads only the parts in its [`Layout`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Descriptor {
     words: [u32; WORDS],
@@ -36,12 +36,12 @@ const TEXTURE_WORDS: usize = texture_planes::BITS.div_ceil(128) * 4;
 const LIGHT_WORDS: usize = planes::BITS.div_ceil(128) * 4;
 const WORDS: usize = FLAT_WORDS + TEXTURE_WORDS + LIGHT_WORDS;
 
-/// The optional parts of a descriptor that a gateware reads.
+/// The optional parts of a descriptor that a build of the gateware reads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Layout {
-    /// The texture.
+    /// Whether the gateware reads the texture.
     pub is_textured: bool,
-    /// The planes of light, for smooth shading.
+    /// Whether the gateware reads the planes of light, for smooth shading.
     pub is_smooth: bool,
 }
 
@@ -64,7 +64,7 @@ impl Layout {
         }
     }
 
-    /// Number of 32-bit words of a descriptor, a multiple of four.
+    /// Number of 32-bit words in a descriptor, a multiple of four.
     pub const fn words(self) -> usize {
         let texture = if self.is_textured { TEXTURE_WORDS } else { 0 };
         let light = if self.is_smooth { LIGHT_WORDS } else { 0 };
@@ -104,12 +104,12 @@ const fn light(channel: usize) -> PlaneFields {
 }
 const SMOOTH: Bits = in_planes(planes::SMOOTH);
 
-/// A field of the light planes, which follow the texture.
+/// The position of a field of the light planes, which follow the texture.
 const fn in_planes(field: Bits) -> Bits {
     field.from(32 * (FLAT_WORDS + TEXTURE_WORDS))
 }
 
-/// A field of the texture, which follows the words of a flat triangle.
+/// The position of a field of the texture, which follows the words of a flat triangle.
 const fn in_texture(field: Bits) -> Bits {
     field.from(descriptor::BITS)
 }
@@ -123,11 +123,11 @@ const fn coordinate(axis: usize) -> PlaneFields {
 
 /// Number of leading words of a piece that are stored at [`stored_piece::LOW`]; the remaining words are stored at [`stored_piece::HIGH`].
 const LOW_WORDS: usize = 4;
-/// Half a depth code, 14 fraction bits, which is added to the depth of a piece.
+/// Half a depth code, 14 fraction bits, which is added to the depth of a piece so that truncation rounds to nearest.
 const HALF_A_CODE: i64 = 1 << 13;
 
 impl Descriptor {
-    /// Packs a triangle; `colour` is its colour under flat shading without a texture.
+    /// Packs a triangle; `colour` is the triangle's colour under flat shading without a texture.
     pub fn new(setup: &Setup, colour: Rgb565, texture: Option<&OfTexture>) -> Self {
         let bounds = setup.bounds;
         // The bounds are in the picture, so they are not negative and the divisions round down.
@@ -227,7 +227,8 @@ fn put_texture(words: &mut [u32; WORDS], texture: &OfTexture, back: i32) {
     in_texture(texture_planes::LINEAR).put(words, texture.weight.is_some().into());
 }
 
-// The functions below are inlined, so that the positions of all fields are constants: no loop over fields, and no shift by a variable.
+// The functions below are inlined, so that the positions of all fields are constants, and the code has no loop over fields and no shift by
+// a variable.
 
 /// Writes the coordinate of a texture along the axis with the index `number`.
 #[inline(always)]
@@ -239,7 +240,7 @@ fn put_axis(words: &mut [u32; WORDS], number: usize, axis: &Axis, back: i32) {
     periods.put(words, axis.periods.into());
 }
 
-/// Writes the edge with the index `number`, its start moved `back` columns to the left.
+/// Writes the edge with the index `number`, with the start column moved to the left by `back`.
 #[inline(always)]
 fn put_edge(words: &mut [u32; WORDS], number: usize, edge: &Edge, back: i32) {
     let start = edge.start - i64::from(back) * i64::from(edge.step_x);
@@ -248,7 +249,7 @@ fn put_edge(words: &mut [u32; WORDS], number: usize, edge: &Edge, back: i32) {
     (descriptor::STEPS_Y.element(number)).put(words, edge.step_y.into());
 }
 
-/// Writes a plane with its start moved `back` columns to the left.
+/// Writes a plane, with the start column moved to the left by `back`.
 #[inline(always)]
 fn put_plane(words: &mut [u32; WORDS], fields: PlaneFields, plane: &Plane, back: i32) {
     let start = plane
@@ -261,7 +262,7 @@ fn put_plane(words: &mut [u32; WORDS], fields: PlaneFields, plane: &Plane, back:
 }
 
 /// Start of a band's list, in 16-byte words from the start of the set of lists. A list holds up to 4 << `shift` entries. The gap between
-/// two lists is as long as a row of a memory bank, so that the lists of neighbouring bands are in different banks.
+/// two lists has the length of a row of a memory bank, so that the lists of neighbouring bands are in different banks.
 pub const fn list_word(band: u32, shift: u32) -> u32 {
     LIST_TABLE_WORDS + (band << shift) + LIST_GAP_WORDS * band
 }
@@ -292,7 +293,7 @@ pub const fn list_shift(width: u32, words: usize) -> u32 {
     (room / size(width).bands() - LIST_GAP_WORDS).ilog2()
 }
 
-/// Lengths of band lists and number of descriptors that a [`ListWriter`] has written.
+/// Lengths of the band lists, and number of the descriptors, that a [`ListWriter`] has written.
 #[derive(Clone, Debug)]
 pub struct ListCounts {
     lengths: [u32; LENGTHS],
@@ -301,29 +302,29 @@ pub struct ListCounts {
 }
 
 impl ListCounts {
-    /// Empty lists.
+    /// The counts of empty lists.
     pub const EMPTY: Self = Self {
         lengths: [0; LENGTHS],
         descriptors: 0,
         is_full: false,
     };
 
-    /// Length of each list.
+    /// Length of each band's list, in entries.
     pub const fn lengths(&self) -> &[u32; LENGTHS] {
         &self.lengths
     }
 
-    /// Number of descriptors.
+    /// Number of descriptors written.
     pub const fn descriptors(&self) -> u32 {
         self.descriptors
     }
 
-    /// Whether the memory for descriptors or for a list was full.
+    /// Whether the memory for descriptors or for a list was too small.
     pub const fn is_full(&self) -> bool {
         self.is_full
     }
 
-    /// The counts of a set of lists and its `descriptors` descriptors, written by a geometry pass.
+    /// The counts of a set of `lists` and of `descriptors` descriptors that a geometry pass has written.
     pub fn of(lists: &[u32], descriptors: u32) -> Self {
         Self {
             lengths: lists.first_chunk().copied().unwrap_or([0; LENGTHS]),
@@ -348,8 +349,8 @@ pub struct ListWriter<'a> {
 pub struct Full;
 
 impl<'a> ListWriter<'a> {
-    /// Continues a set of descriptors and band lists in two regions of memory, for a picture of this width and a gateware with this layout.
-    /// `counts` has the numbers of descriptors and entries written so far. A list holds up to 4 << `list_shift` entries.
+    /// A writer that appends to a set of descriptors and band lists in two regions of memory, for a picture of this width and gateware with
+    /// this layout. `counts` has the numbers of descriptors and entries written so far. A list holds up to 4 << `list_shift` entries.
     pub const fn new(
         descriptors: &'a mut [u32],
         lists: &'a mut [u32],
@@ -393,7 +394,7 @@ impl<'a> ListWriter<'a> {
             return;
         };
         for part in descriptor.words(self.layout) {
-            // All parts together are as long as the descriptor.
+            // The lengths of all parts add up to the length of the descriptor.
             let Some((first, rest)) = to.split_at_mut_checked(part.len()) else {
                 break;
             };
@@ -417,7 +418,7 @@ impl<'a> ListWriter<'a> {
         counts.descriptors += 1;
     }
 
-    /// Writes the table of lengths and returns the number of descriptors in the set.
+    /// Writes the table of list lengths, and returns the number of descriptors in the set.
     ///
     /// # Errors
     /// [`Full`] if a region of memory was too small.

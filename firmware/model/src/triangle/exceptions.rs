@@ -1,4 +1,4 @@
-//! Clipping of exceptions: triangles that the gateware does not clip, but reports to the firmware.
+//! Clipping of exceptions: triangles that the gateware does not clip itself, but reports to the firmware.
 
 use glint_core::mesh::Mesh;
 
@@ -6,10 +6,10 @@ use crate::triangle::mesh_setup::MeshSetup;
 use crate::triangle::primitive::Options;
 use crate::triangle::render::{Emit, Renderer};
 
-/// Clips the gateware's exceptions, given by their `numbers` in the mesh. Calls `emit` with every part inside the volume, and returns the
-/// number of exceptions with such a part.
+/// Clips the gateware's exceptions, which have the indices `numbers` in the mesh. Calls `emit` with every part inside the volume, and
+/// returns the number of exceptions with such a part.
 ///
-/// Numbers in ascending order, the gateware's order, are fastest. Numbers beyond the mesh are ignored.
+/// Ascending indices, the gateware's order, are the fastest. Indices beyond the mesh are ignored.
 pub fn clip_exceptions(
     mesh: &Mesh,
     frame: &MeshSetup,
@@ -19,7 +19,7 @@ pub fn clip_exceptions(
 ) -> u32 {
     let mut renderer = Renderer::new(mesh, frame, options, emit);
     let mut chunks = mesh.chunks();
-    // Numbers of the first triangle and of the first vertex of the chunk.
+    // Indices of the first triangle and of the first vertex of the chunk, in the mesh.
     let (mut chunk, mut first, mut vertex) = (chunks.next(), 0, 0);
     let mut drawn = 0;
     for number in numbers {

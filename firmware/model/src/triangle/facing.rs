@@ -10,9 +10,9 @@ pub fn along(normal: [i16; 3], n: &[i32; 3]) -> i64 {
 /// The visible side of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Facing {
-    /// Front face: counter-clockwise on the screen, so that its signed doubled area 2A is negative.
+    /// Front face: counter-clockwise on the screen, so that the signed doubled area 2A is negative.
     Front,
-    /// Back face: clockwise on the screen, so that its signed doubled area 2A is positive.
+    /// Back face: clockwise on the screen, so that the signed doubled area 2A is positive.
     Back,
 }
 

@@ -1,4 +1,4 @@
-//! Light on meshes from a direction, with a colour, and ambient light (docs/formats/triangle.md, "Light on meshes").
+//! Coloured directional light and ambient light on meshes (docs/formats/triangle.md, "Light on meshes").
 
 use glint_core::camera::View;
 use glint_core::fixed::Q2_23;
@@ -7,7 +7,7 @@ use glint_core::light::{MeshLighting, whole};
 /// The light on the meshes of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MeshLight {
-    /// The row of the light in world coordinates, s2.23: the direction from the light, of length 1.
+    /// The row of the light: the direction from the light in world coordinates, a unit vector, s2.23.
     pub row: [i32; 3],
     /// The camera's forward axis, s2.23.
     pub forward: [i32; 3],
@@ -18,7 +18,7 @@ pub struct MeshLight {
 }
 
 impl MeshLight {
-    /// Colour and ambient light without a `MeshLight`: white light, and no ambient light.
+    /// Colour of the light, and ambient light, in a frame without a `MeshLight`: white and none.
     pub const PLAIN: ([u16; 3], [u16; 3]) = ([1 << 8; 3], [0; 3]);
 
     /// Computes the light on meshes for a camera.
@@ -39,8 +39,8 @@ impl MeshLight {
         }
     }
 
-    /// Returns the share of each channel of a surface's colour that reaches the eye: ambient + colour·intensity, at most 1, u1.8. The
-    /// product is rounded to nearest.
+    /// Returns the factor of each channel of a surface's colour: ambient + colour·intensity, at most 1, u1.8. The product is rounded to
+    /// nearest.
     ///
     /// Not inlined, so that frames with white light at the camera do not load this code into the instruction cache.
     #[inline(never)]

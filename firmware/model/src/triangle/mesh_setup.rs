@@ -19,16 +19,16 @@ pub struct MeshSetup {
     pub height: u32,
     /// Width and height of the picture in pixels.
     pub picture: [u32; 2],
-    /// Column and line of the middle of the picture, counted from the beginning of the window.
+    /// Column and line of the middle of the picture, relative to the first column and line of the window.
     pub middle: [u32; 2],
     /// Scale shift f: the number of fraction bits of `u` and `v`, 6 to 18.
     pub scale_shift: u32,
-    /// The projection.
+    /// Perspective or orthographic projection.
     pub projection: Projection,
-    /// The camera's right axis u, in perspective less the middle of the window times n, scaled to pixels at distance 1: f fraction bits (f
-    /// is `scale_shift`), 25 bits.
+    /// The row of the camera's right axis u, scaled to pixels at distance 1: 25 bits, f of which are fraction bits (f is `scale_shift`). In
+    /// perspective, the middle of the window times n is subtracted before scaling.
     pub u: [i32; 3],
-    /// The camera's down axis, as `u`.
+    /// The row of the camera's down axis v, in the format of `u`.
     pub v: [i32; 3],
     /// The camera's forward axis, s2.23.
     pub n: [i32; 3],
@@ -44,12 +44,12 @@ pub struct MeshSetup {
     pub depth: DepthScale,
     /// The volume to which triangles are clipped.
     pub volume: Volume,
-    /// Whether the mesh is an object, with a model matrix and a colour of its own.
+    /// Whether the mesh is an object, which has its own model matrix and colour.
     pub is_placed: bool,
-    /// The row of the light, s2.23: `n` for a light at the camera, otherwise the direction from the light; for an object in the
-    /// coordinates of its mesh.
+    /// The row of the light, s2.23: `n` for a light at the camera, otherwise the direction from the light. For an object, in the
+    /// coordinates of the object's mesh.
     pub light: [i32; 3],
-    /// Whether the model matrix mirrors the mesh, so that its front faces are clockwise on the screen.
+    /// Whether the model matrix mirrors the mesh, so that front faces are clockwise on the screen.
     pub mirrors: bool,
 }
 
@@ -126,8 +126,8 @@ impl MeshSetup {
         Ok(())
     }
 
-    /// Replaces the scale of depth codes by the scale for a frame with several meshes, whose smallest and largest `depths` are given with
-    /// 37 fraction bits. Without a mesh both depths are the near plane's.
+    /// Replaces the scale of depth codes by the scale for a frame with several meshes. `depths` are the smallest and the largest depth of
+    /// all meshes, with 37 fraction bits; without a mesh, both are the depth of the near plane.
     pub(crate) fn set_depths(&mut self, depths: Option<[i64; 2]>) {
         let [nearest, farthest] = depths.unwrap_or([self.near_plane; 2]);
         match self.projection {
@@ -153,16 +153,17 @@ impl MeshSetup {
         self.translation[2] + self.depth.origin.unwrap_or_default()
     }
 
-    /// The value of the triangle engine's register `scale_shift`: the scale shift f, or f + 1 − ke in orthographic projection.
+    /// The value of the triangle engine's register `scale_shift`: the scale shift f, or f + 1 − ke in orthographic projection, where ke is
+    /// the exponent of the depth codes.
     pub fn engine_shift(&self) -> u32 {
         match self.projection {
             Projection::Perspective => self.scale_shift,
-            // ke is in −6…5 for the engine, and f at least 6.
+            // ke is in −6…5 for the engine, and f is at least 6.
             Projection::Orthographic => (self.scale_shift as i32 + 1 - self.depth.exponent) as u32,
         }
     }
 
-    /// Returns these constants with another clipping of triangles.
+    /// Returns these constants with another volume to which triangles are clipped.
     ///
     /// # Errors
     /// [`RenderError::Far`] for a far plane that is not beyond the near plane.
@@ -187,8 +188,8 @@ impl MeshSetup {
     }
 }
 
-/// The smallest exponent ke of the depth codes of an orthographic frame with one mesh: the vertex stage uses the 24 highest bits of a
-/// depth below 2^(35 + ke) units, and has bits 6 to 40 of the depth.
+/// The smallest exponent ke of the depth codes of an orthographic frame with one mesh. The vertex stage uses the 24 highest bits of a depth
+/// below 2^(35 + ke) units, and only has bits 6 to 40 of the depth.
 const LEAST_EXPONENT: i32 = -6;
 /// The smallest exponent ke of an orthographic frame with objects. Each object subtracts up to 6 from ke.
 const LEAST_OF_OBJECTS: i32 = 0;
@@ -198,7 +199,7 @@ const LEAST_SHIFT: u32 = 6;
 
 /// The scales s·2^f across and down (docs/formats/camera.md, "Frame constants").
 ///
-/// They are cached because they need divisions.
+/// The scales are cached, because their computation takes divisions.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scale {
     key: Key,
@@ -206,10 +207,10 @@ pub(crate) struct Scale {
     axes: [Axis; 2],
 }
 
-/// The numbers on which the scales depend.
+/// The inputs from which the scales are computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Key {
-    /// Numbers of pixels, and their lengths in the window, across and down.
+    /// Across and down: a number of pixels, and their total length in the window.
     scales: [(u32, U8_28); 2],
     /// The largest integer whose product with c of [`Scale::new`] is below 2^24.
     largest: i64,
@@ -219,7 +220,7 @@ impl Key {
     fn new(size: [u32; 2], lens: &Lens) -> Self {
         /// The largest integer whose product with 1 + 2^−12 is below 2^24.
         const LARGEST: i64 = ((1 << 36) - 1) / 4097;
-        // An orthographic window moves the translations instead of the rows.
+        // In orthographic projection, an off-axis window changes the translations and not the rows.
         let [across, down] = match lens.projection() {
             Projection::Perspective => lens.middle().map(Q4_28::unsigned_abs),
             Projection::Orthographic => [U4_28::ZERO; 2],
@@ -238,7 +239,8 @@ impl Key {
     }
 }
 
-/// A scale s·2^f as the fraction P·2^(28 + f)/h, where P is a number of pixels and h their length in the window, with 28 fraction bits.
+/// A scale s·2^f as the fraction P·2^(28 + f)/h, where P is a number of pixels, and h is the total length of these pixels in the window,
+/// with 28 fraction bits.
 #[derive(Clone, Copy, Debug, Default)]
 struct Axis {
     numerator: i64,
@@ -258,11 +260,11 @@ impl Scale {
         }
     }
 
-    /// Finds the largest f up to 18 with ceil(s·2^f)·c < 2^24 for both scales, where c is 1 + 2^−12 for a window whose middle is on the
-    /// camera's axis, and otherwise √2·2^k·(1 + 2^−12), with the smallest k for which its middle is within 2^k of the axis.
+    /// Finds the largest f up to 18 with ceil(s·2^f)·c < 2^24 for both scales. c is 1 + 2^−12 for a window whose middle is on the camera's
+    /// axis. Otherwise c is √2·2^k·(1 + 2^−12), with the smallest k for which the middle is within 2^k of the axis.
     ///
-    /// s is in [1.39, 147128], so f is in 6…18 for a window whose middle is within 1. A component of the basis is at most 1 + 10^−4, which
-    /// is below 1 + 2^−12. A component of u − m·n is at most √2·2^k times this bound for |m| ≤ 2^k.
+    /// s is in [1.39, 147128], so f is in 6…18 for a window whose middle is within 1 of the axis. A component of the basis is at most 1 +
+    /// 10^−4, which is below 1 + 2^−12. A component of u − m·n is at most √2·2^k times this bound for |m| ≤ 2^k.
     // Not inlined, because most frames reuse the scales of the previous frame.
     #[inline(never)]
     fn new(key: Key) -> Self {
@@ -273,8 +275,8 @@ impl Scale {
         } else {
             Axis::whole(other.0, other.1)
         };
-        // `whole` is ceil(s·2^24), which has at least 25 bits. Shifted right and rounded up it is ceil(s·2^f) for a smaller f. Either its
-        // leading 24 bits or its leading 23 bits are then at most LARGEST; fewer for a smaller limit.
+        // `whole` is ceil(s·2^24), which has at least 25 bits. Shifted right and rounded up, `whole` is ceil(s·2^f) for a smaller f. Its
+        // leading 24 bits or its leading 23 bits are at most LARGEST; for a smaller limit, fewer leading bits are.
         let whole = across.whole.max(down.whole);
         let mut cut = (whole.ilog2() - 23).max(6);
         while whole > key.largest << cut {
@@ -295,11 +297,11 @@ impl Scale {
         [u.map(|r| across.scaled(r)), v.map(|r| down.scaled(r))]
     }
 
-    /// Replaces the translations −C·u·s and −C·v·s by translations to the middle of the window, computed from the exact axes, within
-    /// 2^−20 pixel.
+    /// Replaces the translations −C·u·s and −C·v·s by translations relative to the middle of the window. They are computed from the exact
+    /// axes, with errors below 2^−20 pixel.
     ///
-    /// In orthographic projection the rounding error of a row is not divided by the distance to the eye. With exact translations the error
-    /// is proportional to the position in the mesh, and not to its distance from the eye.
+    /// In orthographic projection the rounding error of a row is not divided by the distance to the eye. With exact translations, the
+    /// resulting error is proportional to the position in the mesh, and not to the distance of the mesh from the eye.
     #[inline(never)]
     fn place(&self, view: &View, translation: &mut [i64; 3]) {
         let eye = view.eye().map(Q32_32::to_bits);
@@ -316,7 +318,7 @@ impl Scale {
 }
 
 impl Axis {
-    /// The scale of `pixels` pixels, at most 2^11, of this length, before the choice of f.
+    /// The scale of `pixels` pixels, at most 2^11, with this total length, before f is chosen.
     fn whole(pixels: u32, length: U8_28) -> Self {
         let length = length.to_bits() as i64;
         let whole = (Self::numerator(pixels, 24) + length - 1) / length;
@@ -360,8 +362,8 @@ impl Axis {
     }
 }
 
-/// The rows u − m·n and v − m·n, which make x = 0 and y = 0 the middle m of the window in perspective; the camera's axes u and v for a window
-/// whose middle is on the axis n, and in orthographic projection.
+/// In perspective, the rows u − m·n and v − m·n, with which the middle m of the window is at x = 0 and y = 0. For a window whose middle is
+/// on the axis n, and in orthographic projection, the camera's axes u and v.
 fn aside(view: &View) -> [[Q2_23; 3]; 2] {
     let (rows, n) = ([view.u(), view.v()], view.n());
     let middle = view.lens().middle();

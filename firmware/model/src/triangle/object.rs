@@ -12,25 +12,25 @@ use crate::triangle::volume::Volume;
 const LEAST_SHIFT: u32 = 7;
 
 /// A model matrix, and values derived from it that do not depend on the camera.
-// In this order, so that the fields that the soft core reads in each frame are in few lines of its data cache.
+// The order of the fields puts those that the soft core reads in each frame into few lines of its data cache.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Placement {
     matrix: Matrix,
-    /// The columns of the rotation or reflection of the matrix, without its scale, 24 fraction bits; the identity if normals are
+    /// The columns of the rotation or reflection that the matrix contains, without the scale, 24 fraction bits; the identity if normals are
     /// transformed.
     rotation: [[i32; 3]; 3],
-    /// Upper bound of the length to which the matrix stretches a vector of length 1, 24 fraction bits: the scale, if there is
-    /// one, otherwise the square root of the sum of the squares of all entries.
+    /// Upper bound of the length of a transformed unit vector, 24 fraction bits: the scale, if the matrix scales uniformly, otherwise the
+    /// square root of the sum of the squares of all entries.
     stretch: u32,
     /// Whether the normals are transformed to world coordinates, or the mesh already has such normals; the light is then not rotated.
     in_world: bool,
-    /// The matrix for normals; `None` if normals are not transformed.
+    /// The matrix that transforms normals; `None` if normals are not transformed.
     normals: Option<Normals>,
 }
 
 impl Placement {
-    /// Prepares a model matrix.
+    /// Derives the values of a placement from a model matrix.
     #[inline(never)]
     pub fn new(matrix: Matrix) -> Self {
         const ONE: i32 = 1 << 24;
@@ -39,7 +39,7 @@ impl Placement {
         let [a, b, c] = entries.map(square);
         let normals = matrix.normals();
         let (kept, rotation, squared) = match normals.rotation() {
-            // The squares of the rows' lengths differ from that of the first row by a relative 2^−12 at most.
+            // The squared lengths of the rows differ from that of the first row by a relative 2^−12 at most.
             Some(rotation) => (
                 None,
                 transposed(rotation.map(|row| row.map(|x| (x + (1 << 5)) >> 6))),
@@ -67,14 +67,14 @@ impl Placement {
         &self.matrix
     }
 
-    /// The matrix that transforms the normals of the mesh to the world; `None` if they are not transformed, because the light is rotated
-    /// or the mesh has transformed normals.
+    /// The matrix that transforms the normals of the mesh to world coordinates; `None` if the light is rotated instead, or if the mesh
+    /// already has transformed normals.
     pub const fn normals(&self) -> Option<&Normals> {
         self.normals.as_ref()
     }
 
     /// Returns the placement for a copy of the mesh whose normals have been transformed by [`normals`](Self::normals), if any. The picture
-    /// is equal, bit for bit.
+    /// of the copy is bit-identical.
     #[must_use]
     pub const fn of_turned_mesh(&self) -> Self {
         Self {
@@ -83,7 +83,7 @@ impl Placement {
         }
     }
 
-    /// Whether the mesh is lit in world coordinates: its normals are transformed, or are in world coordinates.
+    /// Whether the mesh is lit in world coordinates: its normals are transformed, or are already in world coordinates.
     pub const fn has_normals_in_world(&self) -> bool {
         self.in_world
     }
@@ -94,8 +94,8 @@ impl Placement {
         (u64::from(radius) * u64::from(self.stretch)) as i64
     }
 
-    /// Returns the smallest and the largest depth of a mesh at this position, with 37 fraction bits, in the camera's frame constants
-    /// `camera`. The length of the axis n may be 1 + 10^−4, so the radius is multiplied by 1 + 2^−13.
+    /// Returns the smallest and the largest depth of a mesh with this placement, with 37 fraction bits. `camera` has the frame constants of
+    /// the camera. The length of the axis n may be 1 + 10^−4, so the radius is multiplied by 1 + 2^−13.
     #[inline(always)]
     pub fn depths(&self, camera: &MeshSetup, radius: u32) -> [i64; 2] {
         let place = self.matrix.place().map(Q8_24::to_bits);
@@ -109,8 +109,8 @@ impl Placement {
     /// objects of a frame.
     ///
     /// All homogeneous coordinates are multiplied by 2^−k, with the smallest k for which the row n and the farthest vertex fit the formats
-    /// of the vertex stage; this does not change positions and depth codes. In orthographic projection only Z is multiplied, because X and
-    /// Y are not divided.
+    /// of the vertex stage. The factor does not change screen positions and depth codes. In orthographic projection only Z is multiplied,
+    /// because X and Y are not divided by a homogeneous coordinate.
     ///
     /// # Errors
     /// [`RenderError::Near`] if the near plane is too near for the size and the distance of the object;
@@ -164,7 +164,7 @@ impl Placement {
             );
             *result = [x, y, z];
             room |= rounded_room(x) | rounded_room(y) | rounded_room(z);
-            // A row is shorter than 2^24.5 and a position vector at most √3·2^29 long, so the product is below 2^55.
+            // The length of a row is below 2^24.5, and that of a position vector is at most √3·2^29, so the product is below 2^55.
             *translation = of_camera + nearest_10(dot(row, &place));
         }
         let [x, y, z] = setup.translation;
@@ -198,8 +198,8 @@ impl Placement {
     }
 }
 
-/// Multiplies the homogeneous coordinates of an object by 2^−k and its rows by the power of two that fits. `setup` has the constants
-/// without these factors. `widest` and `deepest` are the largest |X|, |Y| and |Z|.
+/// Multiplies the homogeneous coordinates of an object by 2^−k, and the object's rows by the power of two with which they fit their
+/// formats. `setup` has the constants without these factors. `widest` is the largest |X| or |Y|, and `deepest` is the largest |Z|.
 ///
 /// Not inlined, because few objects need it.
 #[inline(never)]
@@ -256,7 +256,7 @@ fn fit(
     Ok(())
 }
 
-/// The exact scalar product; below 2^62 for entries of rows, matrices and positions.
+/// The exact scalar product, which is below 2^62 for rows, columns of matrices and positions.
 #[inline(always)]
 const fn dot(a: &[i32; 3], b: &[i32; 3]) -> i64 {
     wide(a[0], b[0]) + wide(a[1], b[1]) + wide(a[2], b[2])
@@ -274,7 +274,7 @@ const fn nearest_24(x: i64) -> i32 {
     ((x + (1 << 23)) >> 24) as i32
 }
 
-/// The exact product.
+/// The exact product of two 32-bit numbers.
 #[inline(always)]
 const fn wide(a: i32, b: i32) -> i64 {
     a as i64 * b as i64
@@ -286,7 +286,7 @@ fn transposed([a, b, c]: [[i32; 3]; 3]) -> [[i32; 3]; 3] {
 
 /// Number of halvings after which a number is 0.
 const fn halvings(x: u32) -> u32 {
-    // A loop, because the soft core counts leading zeros in software and most numbers are 0.
+    // A loop, because most numbers are 0, and the soft core counts leading zeros in software.
     let (mut x, mut count) = (x, 0);
     while x > 0 {
         x >>= 1;
@@ -295,13 +295,13 @@ const fn halvings(x: u32) -> u32 {
     count
 }
 
-/// An upper bound of the magnitude plus [`MOST_ROUNDING`].
+/// The magnitude plus [`MOST_ROUNDING`], or more.
 #[inline(always)]
 const fn rounded_room(x: i32) -> u32 {
     (x ^ (x >> 31)) as u32 + 1 + MOST_ROUNDING
 }
 
-/// The largest magnitude of a row; below 2^30.
+/// The largest magnitude of a row's components; below 2^30.
 fn largest(row: &[i32; 3]) -> u32 {
     let [x, y, z] = row.map(i32::unsigned_abs);
     x.max(y).max(z)
@@ -309,7 +309,7 @@ fn largest(row: &[i32; 3]) -> u32 {
 
 /// Smallest number of halvings after which a number below 2^30, rounded, is less than 2^24.
 const fn excess(x: u32) -> u32 {
-    // Adding the largest rounding keeps a rounded number below the next power of two.
+    // The largest rounding is added first, so that the rounded number is also below the next power of two.
     halvings((x + MOST_ROUNDING) >> 24)
 }
 
@@ -321,7 +321,7 @@ fn halved(row: [i32; 3], shift: u32) -> [i32; 3] {
     row.map(|x| (x + ((1 << shift) >> 1)) >> shift)
 }
 
-/// Divides by 2^`shift`, rounded to nearest. Most objects need no division.
+/// Divides by 2^`shift`, rounded to nearest. Fast for a `shift` of 0, which most objects have.
 const fn shifted(x: i64, shift: u32) -> i64 {
     if shift == 0 {
         return x;

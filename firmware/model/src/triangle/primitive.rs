@@ -1,4 +1,4 @@
-//! The steps between vertex stage and walker for one triangle: facing, bounds, light, and the fan of a clipped triangle.
+//! The steps for one triangle between the vertex stage and the walker: facing, bounds, light, and the triangle fan of a clipped triangle.
 
 use glint_core::camera::Projection;
 use glint_core::colour::{Shading, Winding};
@@ -28,9 +28,11 @@ pub struct Options<'a> {
     pub winding: Winding,
     /// Colour that replaces the colours of the mesh.
     pub colour: Option<Rgb565>,
-    /// Colours of the light; `None` for white light at the camera, without ambient light. The light's direction is in the frame constants.
+    /// Colours of the light and of the ambient light; `None` for white light at the camera, without ambient light. The direction of the
+    /// light is in the frame constants.
     pub light: Option<&'a MeshLight>,
-    /// The matrix that transforms the normals of an object to the coordinates of the light; `None` if they are in these coordinates.
+    /// The matrix that transforms the normals of an object to the coordinates of the light; `None` if the normals are already in these
+    /// coordinates.
     pub normals: Option<&'a Normals>,
     /// Whether the light is in world coordinates, and not in the coordinates of the mesh.
     pub lit_in_world: bool,
@@ -48,7 +50,7 @@ impl Options<'_> {
         }
     }
 
-    /// The share of each channel of a colour that reaches the eye, u1.8, for an intensity.
+    /// The factor of each channel of a surface's colour for an intensity of the light, u1.8.
     fn shares(&self, intensity: u32) -> [u32; 3] {
         match self.light {
             None => [intensity; 3],
@@ -89,9 +91,9 @@ impl Default for Options<'_> {
 pub struct Placed {
     /// Vertices in clockwise order, and the visible side.
     pub oriented: Oriented,
-    /// Bounds of the covered pixels.
+    /// Rows and columns that contain all covered pixels.
     pub bounds: Bounds,
-    /// Colour after flat shading.
+    /// Colour of all pixels under flat shading.
     pub colour: Rgb565,
     /// Light of the vertices under smooth shading, which replaces `colour`.
     pub lit: Option<[Lit; 3]>,
@@ -128,8 +130,8 @@ impl Placed {
         })
     }
 
-    /// Prepares a triangle that is part of an object, has a replaced colour, is lit by another light than white light at the camera, or
-    /// has its visible side determined by [`Winding::Screen`]; with [`Winding::Screen`] it is never culled.
+    /// Prepares a triangle in the less common cases: part of an object, replaced colour, any light but white light at the camera, or
+    /// [`Winding::Screen`], with which no triangle is culled.
     ///
     /// Not inlined, so that other triangles do not load this code into the instruction cache.
     #[inline(never)]
@@ -195,8 +197,8 @@ impl Placed {
     }
 }
 
-/// The texture on a triangle that [`Placed::new`] accepts, from the `number` of the texture in the frame's table and the coordinates s and
-/// t of the triangle's vertices.
+/// The texture on a triangle, for `placed`, the result of [`Placed::new`]. Next to `coordinates`, the s and t of the triangle's vertices,
+/// `number` is the number of the texture in the frame's table.
 ///
 /// Not inlined, so that triangles without textures do not load this code into the instruction cache.
 #[inline(never)]
@@ -233,7 +235,7 @@ pub fn texture_on(
     }
 }
 
-/// The light of a triangle's vertices.
+/// The light at the three vertices of a triangle.
 ///
 /// Not inlined, so that flat triangles do not load this code into the instruction cache.
 #[inline(never)]
@@ -251,7 +253,7 @@ pub fn vertex_light(
     })
 }
 
-/// The light of a vertex.
+/// The light at a vertex, for both sides of a surface.
 pub fn light_of(frame: &MeshSetup, options: &Options, vertex: &Vertex) -> Light {
     let colour = options.colour.unwrap_or(vertex.colour);
     let normal = options.turned(vertex.normal);
@@ -261,7 +263,7 @@ pub fn light_of(frame: &MeshSetup, options: &Options, vertex: &Vertex) -> Light 
     }
 }
 
-/// Lights a vertex, for any light but the default white light at the camera; `normal` is in the coordinates of the light.
+/// The light at a vertex, for any light but white light at the camera. `normal` is in the coordinates of the light.
 ///
 /// Not inlined, so that frames with white light at the camera do not load this code into the instruction cache.
 #[inline(never)]
@@ -276,7 +278,7 @@ fn light_in(
     if options.winding == Winding::Mesh {
         return lit;
     }
-    // The normal is flipped towards the camera, whose position may differ from the light's.
+    // The visible side is the side that faces the camera, which need not be at the light.
     let seen = lit.to(options.seen(frame, normal));
     Light {
         front: seen,
@@ -304,12 +306,12 @@ impl Corner {
 /// A vertex of a clipped triangle with a texture: the vertex, and the coordinates s and t, s16.16.
 pub type TexturedCorner = (Corner, [i32; 2]);
 
-/// The light of three vertices of a clipped triangle; `None` under flat shading.
+/// The light at three vertices of a clipped triangle; `None` under flat shading.
 pub fn lit_corners(shading: Shading, corners: [&Corner; 3]) -> Option<[Light; 3]> {
     (shading == Shading::Smooth).then(|| corners.map(|corner| corner.light))
 }
 
-/// Clips a triangle and emits the remaining polygon as a fan.
+/// Clips a triangle, and emits the remaining polygon as a triangle fan.
 pub fn clip_fan(
     frame: &MeshSetup,
     options: &Options,
@@ -322,7 +324,7 @@ pub fn clip_fan(
     }
 }
 
-/// Clips a triangle as [`clip_fan`] does, with the coordinates of a texture at its vertices.
+/// As [`clip_fan`], with the coordinates of a texture at the vertices.
 ///
 /// Not inlined, so that triangles without textures do not load this code into the instruction cache.
 #[inline(never)]
@@ -345,7 +347,7 @@ pub fn clip_textured_fan(
     fan(frame, vertices, corner, emit);
 }
 
-/// The vertices of a triangle in the order of its fan, each with its number in the triangle.
+/// The vertices of a triangle in the order of the fan, and the index of each vertex in the triangle.
 ///
 /// The fan starts at the vertex whose position is the first in lexicographic order, so that a cyclic shift of the triangle's indices has
 /// no effect.
@@ -368,7 +370,7 @@ fn fan_vertices(
     if options.winding == Winding::Screen
         && vertices[order[2]].position < vertices[order[1]].position
     {
-        // The vertex order in the mesh has no effect on the result.
+        // With this order, the orientation of the triangle in the mesh has no effect on the result.
         order.swap(1, 2);
     }
     let vertices = order.map(|i| CameraVertex {
@@ -381,7 +383,7 @@ fn fan_vertices(
     Some((order, vertices))
 }
 
-/// Clips a triangle, converts the vertices of the remaining polygon by `corner`, and emits the polygon as a fan.
+/// Clips a triangle, converts the vertices of the remaining polygon with `corner`, and emits the polygon as a triangle fan.
 fn fan<C: Cut, R>(
     frame: &MeshSetup,
     vertices: [C; 3],

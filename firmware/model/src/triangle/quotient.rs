@@ -24,14 +24,14 @@ pub const CHANNEL_BITS: [u32; 3] = [5, 6, 5];
 /// The largest channels with fraction bits: 31, 63 and 31 steps.
 pub const LARGEST: [u8; 3] = Rgb565::WHITE.fractions();
 
-/// The channels of a pixel, red u5.3, green u6.2 and blue u5.3, from the light accumulators of its channels, and from `depth`, its depth accumulator plus
-/// half a code.
+/// The channels of a pixel, red u5.3, green u6.2 and blue u5.3. `values` are the light accumulators of the channels, and `depth` is the
+/// depth accumulator plus half a code.
 ///
 /// The depth of a covered pixel is at least 2^7 codes; smaller depths give a meaningless colour.
 pub fn colour(light: [u32; 3], depth: u32, rounding: Rounding) -> [u8; 3] {
     let shift = depth.leading_zeros().min(11);
     let inverse = INVERSE[((depth << shift) >> 21 & 0x3FF) as usize];
-    // With 8 bits of a channel; 40 − `shift` bits of a product are fraction bits of the light.
+    // A channel has 8 bits. A product has 40 − `shift` fraction bits.
     let cut = 32 - shift;
     [0, 1, 2].map(|i: usize| {
         let value = light[i];

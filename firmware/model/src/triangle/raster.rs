@@ -1,8 +1,9 @@
-//! The walker: finds the pixels of a triangle row by row, tests their depth and writes them.
+//! The walker, which finds the pixels of a triangle row by row, tests their depth and writes them.
 //!
-//! A triangle is convex, so each row has one span of covered pixels. The span starts where all edges of the left side pass
-//! and ends where an edge of the right side fails. From row to row the walker moves both ends of the span along the edges,
-//! pixel by pixel. Horizontal edges need no test, because the bounds only contain rows at or below a top edge and above a bottom edge.
+//! A triangle is convex, so each row has one span of covered pixels. The span starts at the first pixel that is inside all edges of the
+//! left side, and ends at the last pixel that is inside all edges of the right side. From row to row the walker moves both ends of the span
+//! along the edges, pixel by pixel. Horizontal edges need no test, because the bounds only contain rows at or below a top edge and above a
+//! bottom edge.
 
 use core::ops::{Add, BitOr, Sub};
 
@@ -19,15 +20,15 @@ use crate::triangle::textured::Textured;
 /// Counts of the pixels of one triangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Coverage {
-    /// Pixels tested: covered pixels, and pixels just outside the ends of a span.
+    /// Number of pixels tested: covered pixels, and pixels just outside the ends of a span.
     pub tested: u32,
-    /// Pixels covered.
+    /// Number of pixels covered by the triangle.
     pub covered: u32,
-    /// Covered pixels that passed the depth test and were written.
+    /// Number of covered pixels that passed the depth test and were written.
     pub drawn: u32,
 }
 
-/// Draws a triangle; `colour` is its colour under flat shading.
+/// Draws a triangle without a texture; `colour` is the triangle's colour under flat shading.
 pub fn draw(setup: &Setup, colour: Rgb565, target: &mut FrameBuffer) -> Coverage {
     match &setup.light {
         None => draw_with(setup, colour, target),
@@ -35,8 +36,7 @@ pub fn draw(setup: &Setup, colour: Rgb565, target: &mut FrameBuffer) -> Coverage
     }
 }
 
-/// Draws a triangle, with a texture or without one, in fog. Not generic over the source of colours, so that drawing without fog does not
-/// become larger.
+/// Draws a triangle, with a texture or without one, in fog. The brush is a trait object, so that the code size for fog is small.
 #[inline(never)]
 pub fn draw_in_fog(
     setup: &Setup,
@@ -55,8 +55,8 @@ pub fn draw_in_fog(
     }
 }
 
-/// Draws a triangle as [`draw`] and [`draw_in_fog`] do. Calls `visit` with each row that has a covered pixel, and with the first and the last group of
-/// eight columns that contains a covered pixel; the engine's lanes process all groups between them.
+/// Draws a triangle as [`draw`] and [`draw_in_fog`] do. For each row with a covered pixel, calls `visit` with the row and with the first
+/// and the last group of eight columns that contains a covered pixel. The engine's lanes process these groups and all groups between them.
 pub fn draw_groups(
     setup: &Setup,
     colour: Rgb565,
@@ -119,20 +119,20 @@ fn draw_with(setup: &Setup, brush: impl Brush, target: &mut FrameBuffer) -> Cove
     }
 }
 
-/// The source of pixel colours. The walker moves it over the triangle together with the depth.
+/// The source of pixel colours. The walker moves the brush over the triangle together with the depth.
 trait Brush {
-    /// A colour: RGB565, or its channels with fraction bits, as of [`Rgb565::with_fractions`].
+    /// A colour: RGB565, or channels with fraction bits, as [`Rgb565::with_fractions`] returns them.
     type Colour;
-    /// Begins the covered columns of a row; `columns` are the first and the last one, and the first is `offset` columns right of the start
-    /// column.
+    /// Moves to the first of the covered columns of a row. `columns` are the first and the last covered column, and `offset` is the number
+    /// of columns from the start column to the first one.
     fn go_to(&mut self, offset: u32, columns: [i32; 2]);
     /// Moves one pixel to the right.
     fn go_right(&mut self);
     /// Moves to the next row. The column is unspecified until the next `go_to`.
     fn go_down(&mut self);
-    /// The colour of the pixel; `depth` is its depth accumulator plus half a code. `None` for a transparent pixel.
+    /// The colour of the current pixel; `depth` is the pixel's depth accumulator plus half a code. `None` for a transparent pixel.
     fn colour(&self, depth: u32) -> Option<Self::Colour>;
-    /// Writes a pixel that passed the depth test, with its `colour` and depth `code`; `place` is its column and row.
+    /// Writes a pixel that passed the depth test, with the given `colour` and depth `code`; `place` is the pixel's column and row.
     fn write(
         &self,
         colour: Self::Colour,
@@ -141,7 +141,7 @@ trait Brush {
         pixel: &mut u16,
         stored: &mut u32,
     );
-    /// Whether pixels are added to the picture, so that fog darkens them.
+    /// Whether pixels are blended by addition, so that fog darkens them.
     fn is_added(&self) -> bool {
         false
     }
@@ -162,7 +162,7 @@ impl Brush for Rgb565 {
     }
 }
 
-/// Flat shading, with the fraction bits that a pixel in fog has.
+/// Flat shading, with the fraction bits that fog requires.
 struct Flat {
     colour: [u8; 3],
     rounding: Rounding,
@@ -198,7 +198,7 @@ impl Brush for Flat {
     }
 }
 
-/// A brush that reports the groups of columns.
+/// A brush that reports the groups of columns to `visit`.
 struct Grouped<'a, B> {
     brush: B,
     row: i32,
@@ -233,11 +233,11 @@ impl<B: Brush> Brush for Grouped<'_, B> {
     }
 }
 
-/// A brush in fog.
+/// A brush whose colours are mixed with fog.
 struct Fogged<'a> {
     brush: &'a mut dyn Brush<Colour = [u8; 3]>,
     fog: &'a Fog,
-    /// Colour of the fog, black for pixels that are added to the picture.
+    /// Colour of the fog; black for pixels that are blended by addition.
     colour: [u8; 3],
 }
 
@@ -275,7 +275,7 @@ impl Brush for Fogged<'_> {
     }
 }
 
-/// A plane, with its value at the current pixel (`value`) and at the start column of the current row (`row`).
+/// A plane, with the value at the current pixel (`value`) and the value at the start column of the current row (`row`).
 #[derive(Clone, Copy)]
 struct Accumulation {
     plane: Plane,
@@ -310,7 +310,7 @@ impl Accumulation {
 /// Smooth shading: the colour comes from the planes of red, green and blue.
 struct Smooth {
     light: [Accumulation; 3],
-    /// The common weight of the light; `None` if the depth of each pixel is its weight.
+    /// The weight of the light in all pixels; `None` if each pixel's depth is the weight.
     weight: Option<u32>,
     rounding: Rounding,
 }
@@ -354,17 +354,17 @@ impl Brush for Smooth {
     }
 }
 
-/// A texture: its colour is multiplied by the light of the triangle or, under smooth shading, by the light of each pixel.
+/// A texture, whose colour is multiplied by the light of the triangle or, under smooth shading, by the light of each pixel.
 struct Textures<'a> {
     setup: &'a Setup,
     textured: &'a Textured<'a>,
-    /// The coordinates, each times the depth.
+    /// The texture coordinates, each multiplied by the depth.
     places: [Accumulation; 2],
     light: Option<[Accumulation; 3]>,
-    /// The depth, with half a code added.
+    /// The depth plus half a code.
     depth: Accumulation,
     column: i32,
-    /// The mip level of the group of columns.
+    /// The mip level of the current group of columns.
     level: u32,
     rounding: Rounding,
 }
@@ -391,7 +391,7 @@ impl<'a> Textures<'a> {
         places.chain(light).chain(core::iter::once(&mut self.depth))
     }
 
-    /// Determines the mip level of the group from its first covered pixel.
+    /// Computes the mip level of the current group from the group's first covered pixel.
     fn set_level(&mut self) {
         let places = self.places.map(|place| place.value);
         self.level = self.textured.level(self.setup, self.depth.value, places);
@@ -421,7 +421,7 @@ impl Brush for Textures<'_> {
         self.textured
             .colour(depth, places, self.level, light, self.rounding)
     }
-    /// The depth behind a blended pixel stays.
+    /// A blended pixel does not change the stored depth code.
     fn write(
         &self,
         colour: [u8; 3],
@@ -505,8 +505,8 @@ fn walk<A: Accumulator>(
     coverage
 }
 
-/// Writes the pixels in columns `from` to `to` of a row that pass the depth test. `depth` is the depth accumulator plus
-/// half a code, so that truncation rounds to nearest. Returns the number of pixels written.
+/// Writes those pixels in columns `from` to `to` of a row that pass the depth test. `depth` is the depth accumulator plus half a code, so
+/// that truncation rounds to nearest. Returns the number of pixels written.
 fn fill(
     target: &mut FrameBuffer,
     row: i32,
@@ -536,10 +536,10 @@ fn fill(
     drawn
 }
 
-/// One end of a row's span: the outermost column in which all edges on this side of the triangle, one or two, pass.
+/// One end of a row's span: the outermost column that is inside the one or two edges on this side of the triangle.
 ///
 /// The edge functions E' of these edges decrease by |dy| per pixel in the direction away from the triangle. On a side with one edge the
-/// second E' is always 0, which passes.
+/// second E' is always 0, which means inside.
 struct End<A> {
     /// E' of the edges at `column` in the current row.
     value: [A; 2],
@@ -548,11 +548,11 @@ struct End<A> {
     /// Increment of E' for one row down.
     down: [A; 2],
     column: i32,
-    /// Step of the column away from the triangle: −1 on the left side, 1 on the right side.
+    /// Change of `column` for a step away from the triangle: −1 on the left side, 1 on the right side.
     outwards: i32,
-    /// Outermost column of the bounds.
+    /// Outermost column of the bounds on this side.
     outermost: i32,
-    /// The first column beyond the bounds on the opposite side. If the end of the span reaches it, no column of the row passes.
+    /// The first column beyond the bounds on the opposite side. If the end of the span reaches this column, the row has no covered pixel.
     nowhere: i32,
 }
 
@@ -616,7 +616,7 @@ impl<A: Accumulator> End<A> {
     }
 }
 
-/// Whether no value is negative: the bitwise OR is negative if any value is.
+/// Whether no value is negative. The bitwise OR is negative if any value is negative.
 fn passes<A: Accumulator>([a, b]: [A; 2]) -> bool {
     a | b >= A::default()
 }

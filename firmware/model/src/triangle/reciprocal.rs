@@ -17,10 +17,10 @@ const fn seeds() -> [u16; 256] {
     table
 }
 
-/// Approximates 2^47/m for a mantissa m in [2^23, 2^24); the result is in [2^23, 2^24) too.
+/// Approximates 2^47/m for a mantissa m in [2^23, 2^24); the result is also in [2^23, 2^24).
 ///
-/// The error is at most one unit: the result for m = 2^23 saturates to 2^24 − 1, and all other results are within 0.51 of
-/// the exact quotient. The result never increases with m. An m outside the range gives a meaningless number.
+/// The error is at most one unit: the result for m = 2^23 saturates to 2^24 − 1, and all other results are within 0.51 of the exact
+/// quotient. A larger m never gives a larger result. An m outside the range gives a meaningless number.
 pub const fn recip(m: u32) -> u32 {
     let y0 = SEED[(m >> 15 & 0xFF) as usize] as u32;
     let y1 = (y0 << 7).wrapping_add_signed((y0 as i32).wrapping_mul(residue(m, y0)) >> 18);
@@ -50,7 +50,7 @@ pub struct Reciprocal {
 impl Reciprocal {
     /// Computes the reciprocal of `v` after truncating `v` to its highest 24 bits. A `v` of 0 counts as 1.
     ///
-    /// The relative error is below 2^−22: 2^−23 from the truncation of `v`, and one unit of the last place of `y`.
+    /// The relative error is below 2^−22: 2^−23 from the truncation of `v`, plus one unit in the last place of `y`.
     pub const fn of(v: u64) -> Self {
         let v = v | (v == 0) as u64;
         let lead = v.ilog2();

@@ -1,4 +1,4 @@
-//! Rectangles of the screen (docs/formats/texture.md, "Rectangles"), as input of the walker.
+//! Converts rectangles of the screen (docs/formats/texture.md, "Rectangles") to input of the walker.
 
 use glint_core::picture::{Samples, Window};
 use glint_core::rectangle::Rectangle;
@@ -7,14 +7,14 @@ use crate::triangle::setup::{Bounds, Edge, Plane, Setup};
 use crate::triangle::textured::{Axis, Textured, flat_light, weight};
 use crate::triangle::vertex::LARGEST_DEPTH;
 
-/// Base-2 logarithm of the range of a coordinate: a part ends at 1 at most, which only the range of two repeats contains.
+/// Base-2 logarithm of the range of a coordinate. The coordinate 1, at which a part may end, requires the range of two repeats.
 const RANGE_LOG2: u32 = 1;
-/// Value of an accumulator at the end of the range, base-2 logarithm.
+/// Base-2 logarithm of an accumulator's value at the end of the range.
 const ACCUMULATOR_LOG2: u32 = 31;
 
-/// The visible part of a rectangle in a window of a picture with this number of samples a pixel, as the setup of a triangle: two of its
-/// edges are the left and the right side, every sample passes the third edge, and the bounds limit the rows. `None` if no sample is
-/// visible.
+/// The visible part of a rectangle in a window of a picture with this number of samples per pixel, as the setup of a triangle. Two edges
+/// are the left and the right side of the rectangle, all samples are inside the third edge, and the bounds limit the rows. `None` if no
+/// sample is visible.
 pub fn set_up<'a>(
     rectangle: &Rectangle<'a>,
     window: Window,
@@ -65,19 +65,20 @@ pub fn set_up<'a>(
     Some((setup, textured))
 }
 
-/// The visible columns or rows of samples of a rectangle, and the accumulator of their texture coordinate.
+/// The visible columns or rows of samples of a rectangle, and the accumulator of the texture coordinate along them.
 struct Span {
-    /// The first visible column or row, and one past the last one.
+    /// The first visible column or row; `end` is one past the last one.
     first: i32,
     end: i32,
-    /// The accumulator at the first visible sample.
+    /// The value of the accumulator at the first visible sample.
     start: u32,
-    /// The step from a sample to the next.
+    /// The change of the accumulator from a sample to the next.
     step: u32,
 }
 
 impl Span {
-    /// The span in a window from the sample `origin` on, with a number of `samples` in a pixel's width or height.
+    /// The span along one axis, in a window of `window` samples that begins at the sample `origin`. A pixel has `samples` samples along the
+    /// axis.
     fn new(
         rectangle: &Rectangle,
         axis: usize,
@@ -94,7 +95,7 @@ impl Span {
             return None;
         }
         let [low, high] = [from, to].map(|texel| side(texel, side_log2));
-        // Rounded down, so that no sample is beyond the part.
+        // Rounded down, so that no sample is beyond the end of the part.
         let step = (high - low) / size;
         let passed = step * (first - place) as u32 + step / 2;
         let (start, step) = if rectangle.is_mirrored[axis] {
@@ -111,8 +112,8 @@ impl Span {
     }
 }
 
-/// An accumulator whose position is at the left or upper side of a texel, and from which lower accumulators have positions before this side.
-/// The inverse of the weight is 1 − 2^−18, and the lowest eight bits of an accumulator are not used.
+/// The smallest accumulator with a position at or after the left or upper side of a texel. It exceeds the exact value, because the inverse
+/// of the weight is 1 − 2^−18, and the lowest eight bits of an accumulator are not used.
 const fn side(texel: u32, side_log2: u32) -> u32 {
     let exact = texel << (ACCUMULATOR_LOG2 - RANGE_LOG2 - side_log2);
     exact + (((exact >> 26) + 1) << 8)

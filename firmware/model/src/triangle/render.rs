@@ -33,16 +33,16 @@ pub struct Stats {
     /// the near plane or outside of the picture, triangles without a pixel centre in their bounds, and tiny triangles that cover no pixel
     /// centre.
     pub culled: u32,
-    /// Number of triangles that went through the clipper, with or without a visible part.
+    /// Number of triangles that the clipper processed, with or without a visible part.
     pub clipped: u32,
-    /// Number of triangles that reached the walker, whole or in part.
+    /// Number of triangles of which at least a part reached the walker.
     pub drawn: u32,
-    /// Pixels tested by the walker: covered pixels, and pixels just outside the ends of a span. `None` if the triangle engine draws: its
-    /// walker tests groups of eight pixels, which its counter `cycles_walking` counts.
+    /// Number of pixels tested by the walker: covered pixels, and pixels just outside the ends of a span. `None` if the triangle engine
+    /// draws, because the engine tests groups of eight pixels, which the engine's counter `cycles_walking` counts.
     pub pixels_tested: Option<u64>,
-    /// Pixels covered, counted once for each triangle.
+    /// Number of pixels covered. A pixel counts once for each triangle that covers it.
     pub pixels_covered: u64,
-    /// Covered pixels that passed the depth test and were written.
+    /// Number of covered pixels that passed the depth test and were written.
     pub pixels_drawn: u64,
 }
 
@@ -80,21 +80,22 @@ pub struct DrawnTriangle {
     pub vertices: [ScreenVertex; 3],
     /// The visible side.
     pub facing: Facing,
-    /// Colour after flat shading.
+    /// Colour of all pixels under flat shading.
     pub colour: Rgb565,
     /// Light of the vertices under smooth shading, which replaces `colour`.
     pub lit: Option<[Lit; 3]>,
-    /// Whether the triangle was made by the clipper.
+    /// Whether the triangle is a part that the clipper made.
     pub clipped: bool,
 }
 
-/// Receives a triangle, its setup, and its texture if it has one.
+/// Receives a triangle, its setup, and its texture if the triangle has one.
 pub type Emit<'b> = dyn FnMut(&DrawnTriangle, &Setup, Option<&Textured>) + 'b;
 
 /// Draws a mesh.
 ///
-/// `scratch` must hold the vertices of the largest chunk. The contents of `scratch` and of the frame buffer are overwritten.
-/// Unclipped triangles are drawn by index, then clipped triangles by index; at equal depths the later triangle wins.
+/// `scratch` must hold the vertices of the largest chunk. The contents of `scratch` and of the frame buffer are overwritten. Unclipped
+/// triangles are drawn first, in the order of their indices, then clipped triangles. At equal depths the later triangle hides the earlier
+/// one.
 ///
 /// # Errors
 /// [`RenderError`]; the frame buffer is then unchanged.
@@ -108,7 +109,7 @@ pub fn render(
     trace(mesh, view, target, scratch, options, |_| {})
 }
 
-/// Draws a mesh as [`render`] does, and calls `show` with each triangle before it is drawn.
+/// Draws a mesh as [`render`] does. Calls `show` with each triangle before the triangle is drawn.
 ///
 /// # Errors
 /// [`RenderError`]; the frame buffer is then unchanged.
@@ -167,8 +168,8 @@ pub struct PreparedMesh<'a> {
     pub options: Options<'a>,
 }
 
-/// Draws the parts of a frame (see [`set_up_parts`]) on the background colour `clear`, or, with `None`, over the picture in the frame
-/// buffer; in `fog`, if there is some. Calls `show` with each triangle before it is drawn.
+/// Draws the parts of a frame (see [`set_up_parts`]) on the background colour `clear` or, with `None`, over the picture in the frame
+/// buffer; in `fog`, if any. Calls `show` with each triangle before the triangle is drawn.
 ///
 /// # Errors
 /// As [`set_up_parts`], or the size of a part differs from the frame buffer's. If no triangle has been drawn yet, the frame buffer is
@@ -215,12 +216,12 @@ pub fn draw_parts<'a>(
     })
 }
 
-/// Makes the triangles of the parts of a frame of this size, and calls `emit` with each triangle, its setup, and its texture if it has
-/// one. `part` returns a part by its number, and `None` after the last part; it is called twice for a part with triangles to clip. The
-/// pixel counts in the result are 0.
+/// Sets up the triangles of the parts of a frame of this size. Calls `emit` with each triangle, its setup, and its texture if the triangle
+/// has one. `part` returns a part by its number, and `None` after the last part; `part` is called twice for a part with triangles to clip.
+/// The pixel counts in the result are 0.
 ///
-/// Unclipped triangles come first, by part and index, then clipped triangles, by part and index: the order in which the gateware draws
-/// them.
+/// Unclipped triangles come first, ordered by part and index, then clipped triangles in the same order. This is the order in which the
+/// gateware draws.
 ///
 /// Not generic, so that it is compiled once, with this crate's optimisation level.
 ///
@@ -234,7 +235,8 @@ pub fn set_up_parts<'a>(
     emit: &mut Emit,
 ) -> Result<Stats, RenderError> {
     let mut stats = Stats::default();
-    // Number of the first part with triangles to clip; number of the part whose vertices are in the scratch memory.
+    // `first` is the number of the first part with triangles to clip, and `projected` that of the part whose vertices are in the
+    // scratch memory.
     let (mut first, mut projected) = (None, 0);
     let mut number = 0;
     while let Some(PreparedMesh {
@@ -321,11 +323,11 @@ fn mark_outside(frame: &MeshSetup, chunk: &Chunk, scratch: &mut [Projected]) {
     }
 }
 
-/// Makes the triangles of one mesh.
+/// Sets up the triangles of one mesh.
 pub(super) struct Renderer<'a, 'b> {
     frame: MeshSetup,
     options: Options<'a>,
-    /// The textures of the mesh, if it has textures and they are drawn.
+    /// The textures of the mesh; `None` if the mesh has none, or if textures are not drawn.
     textures: Option<MeshTextures<'a>>,
     emit: &'b mut Emit<'b>,
     stats: Stats,
@@ -347,7 +349,7 @@ impl<'a, 'b> Renderer<'a, 'b> {
         }
     }
 
-    /// Makes the triangles that need no clipping, and counts the others.
+    /// Sets up the triangles that need no clipping, and counts the other triangles.
     fn regular(&mut self, mesh: &Mesh, scratch: &mut [Projected]) {
         let mut index = 0;
         let mut first = 0;
@@ -385,8 +387,8 @@ impl<'a, 'b> Renderer<'a, 'b> {
         }
     }
 
-    /// Draws the triangles that need clipping, of which `left` remain. With `is_projected` the vertices of the mesh are in the
-    /// scratch memory. Returns the number that remains for other meshes.
+    /// Clips and sets up the mesh's triangles that need clipping. `left` is the number of such triangles in this and all further meshes.
+    /// With `is_projected` the vertices of the mesh are in the scratch memory. Returns the number in the further meshes.
     fn exceptions(
         &mut self,
         mesh: &Mesh,
@@ -469,7 +471,7 @@ impl<'a, 'b> Renderer<'a, 'b> {
         any
     }
 
-    /// Sets up and shades one triangle on the screen. Returns whether the triangle reaches the walker.
+    /// Sets up and shades one triangle on the screen. Returns whether the triangle reaches the walker, the stage that finds pixels.
     fn draw(
         &mut self,
         index: u32,

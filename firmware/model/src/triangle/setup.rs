@@ -11,7 +11,7 @@ use crate::triangle::vertex::ScreenVertex;
 /// A triangle with a positive area, its vertices clockwise on the screen (y points down).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Oriented {
-    /// The vertices, with 1 and 2 swapped for a front face.
+    /// The vertices; vertices 1 and 2 of a front face are swapped.
     pub vertices: [ScreenVertex; 3],
     /// The doubled area a = |2A| > 0, u40 with 16 fraction bits. It is at most the area of a square that contains the
     /// triangle.
@@ -84,8 +84,8 @@ pub struct Bounds {
 
 impl Bounds {
     /// Returns the bounds of the pixels in the picture whose centres c have min ≤ c < max in both directions, where min and max are the
-    /// limits of the (clockwise) vertices; `None` if there is no such pixel. Also `None` for a triangle that covers no pixel and has at
-    /// most 2×2 such centres, inside or outside of the picture.
+    /// limits of the (clockwise) vertices; `None` if no pixel has. Also `None` for a triangle that covers no pixel, and whose limits
+    /// contain at most 2×2 pixel centres, inside or outside of the picture.
     ///
     /// The upper limits are exclusive, because the top-left rule acts as if pixel centres were moved slightly to the right and, by even
     /// less, down.
@@ -106,8 +106,8 @@ impl Bounds {
     }
 }
 
-/// Returns the range of pixel indices i, in the picture or not, with min ≤ 256·i + 128 < max, where min and max are the limits of the
-/// three coordinates.
+/// Returns the range of pixel indices i, inside or outside of the picture, with min ≤ 256·i + 128 < max, where min and max are the limits
+/// of the three coordinates.
 fn columns([a, b, c]: [i32; 3]) -> Range<i32> {
     let first_at_or_after = |x: i32| (x + 127) >> 8;
     first_at_or_after(a.min(b).min(c))..first_at_or_after(a.max(b).max(c))
@@ -129,14 +129,14 @@ fn covers_none(&[v0, v1, v2]: &[ScreenVertex; 3], first: [i32; 2]) -> bool {
         .any(|&(column, row)| covers(column, row))
 }
 
-/// An edge function E': its value at the start pixel and its steps. A pixel is inside the edge where E' ≥ 0.
+/// An edge function E': the value at the start pixel, and the change per pixel. A pixel is inside the edge where E' ≥ 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Edge {
     /// Value at the start pixel: E' = floor((E − bias)/256), s34. The bias is 0 for a top or left edge, otherwise 1.
     pub start: i64,
-    /// Step of one pixel to the right, −dy, s21: positive on the left side of a triangle, negative on its right side.
+    /// Change from a pixel to the next pixel on the right, −dy, s21: positive on the left side of a triangle, negative on the right side.
     pub step_x: i32,
-    /// Step of one pixel down, dx, s21.
+    /// Change from a pixel to the pixel below, dx, s21.
     pub step_y: i32,
 }
 
@@ -158,15 +158,15 @@ impl Edge {
     }
 }
 
-/// A linear function on the screen, of depth or of light: the value of its accumulator at the start pixel and its steps,
+/// A linear function on the screen, for depth or light: the value at the start pixel, and the change per pixel, in the accumulator's format
 /// 18.14 modulo 2^32.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Plane {
     /// The value at the start pixel.
     pub start: u32,
-    /// Step of one pixel to the right.
+    /// Change from a pixel to the next pixel on the right.
     pub step_x: u32,
-    /// Step of one pixel down.
+    /// Change from a pixel to the pixel below.
     pub step_y: u32,
 }
 
@@ -174,8 +174,8 @@ impl Plane {
     /// Computes steps 6 to 8 of the setup (docs/formats/triangle.md, "Triangle setup") for the values w0, w1, w2 of depth or light
     /// at the vertices, u18.6.
     ///
-    /// A difference of values is below 2^24 and a difference of positions below 2^20, so Nx and Ny are below 2^45.
-    /// Inlined, because this call computes the only plane of a flat triangle.
+    /// A difference of values is below 2^24 and a difference of positions below 2^20, so Nx and Ny are below 2^45. Inlined, because a flat
+    /// triangle needs only this call.
     #[inline(always)]
     pub(super) fn new(triangle: &Oriented, [w0, w1, w2]: [u32; 3], [i, j]: [i32; 2]) -> Self {
         let [v0, v1, v2] = triangle.vertices;
@@ -209,7 +209,7 @@ impl Plane {
 /// One gradient of a plane: nearest(N·y·2^−(lead + 8)) for a numerator N with |N| < 2^45. The result is exact, and at most
 /// 2^62.
 ///
-/// The product N·y has 69 bits. N is therefore split into two parts, and the product with the low part is shifted first.
+/// The product N·y has 69 bits. N is therefore split into two parts, and the product with the low part is shifted before the addition.
 const fn gradient(numerator: i64, Reciprocal { y, lead }: Reciprocal) -> i64 {
     let shift = lead + 8;
     let high = (numerator >> 24) * y as i64;
@@ -221,7 +221,7 @@ const fn gradient(numerator: i64, Reciprocal { y, lead }: Reciprocal) -> i64 {
     }
 }
 
-/// The weight of light in orthographic projection, u18.6: half a code less than 2^17 codes, so that no bit of the light is lost.
+/// The weight of light in orthographic projection, u18.6: 2^17 codes minus half a code, so that no bit of the light is lost.
 pub const WEIGHT: u32 = (1 << 23) - HALF_CODE;
 
 /// The input of the walker, which finds the pixels of a triangle.
@@ -236,10 +236,10 @@ pub struct Setup {
     pub edges: [Edge; 3],
     /// Plane of the depth accumulator.
     pub depth: Plane,
-    /// Planes of red, green and blue under smooth shading: light times depth in perspective, light times a constant in orthographic
+    /// Planes of red, green and blue under smooth shading: light times depth in perspective, or light times `weight` in orthographic
     /// projection.
     pub light: Option<[Plane; 3]>,
-    /// The constant of `light` in orthographic projection, in the format of the depth accumulator.
+    /// The constant weight of `light` in orthographic projection, in the format of the depth accumulator.
     pub weight: Option<u32>,
     /// Whether all edge functions E' fit 32 bits everywhere in the bounds and one pixel around them.
     pub narrow: bool,
@@ -273,7 +273,7 @@ impl Setup {
         }
     }
 
-    /// Column and row of the start pixel.
+    /// Column and row of the start pixel, at which edges and planes have their start values.
     pub(super) const fn start(&self) -> [i32; 2] {
         [self.start_column, self.bounds.top]
     }
@@ -288,7 +288,7 @@ impl Setup {
         setup.with_light(triangle, lit, triangle.vertices.map(|v| v.w))
     }
 
-    /// Like [`smooth`](Self::smooth), in orthographic projection: light is linear on the screen, so all vertices have the same weight.
+    /// As [`smooth`](Self::smooth), but in orthographic projection: light is linear on the screen, so all vertices have the same weight.
     #[inline(never)]
     pub fn linear(triangle: &Oriented, bounds: Bounds, lit: &[Lit; 3]) -> Self {
         let setup = Self::new(triangle, bounds);

@@ -5,7 +5,7 @@ use glint_core::colour::Rgb565;
 use crate::triangle::facing::{Facing, along};
 use crate::triangle::rounding::nearest;
 
-/// Half a depth code, u18.6, added to the weight of light (docs/formats/triangle.md, "Smooth shading").
+/// Half a depth code, u18.6, which is added to the weight of light (docs/formats/triangle.md, "Smooth shading").
 pub const HALF_CODE: u32 = 1 << 5;
 
 /// Intensity clamp(−N·l, 0, 1), u1.8, for the normal N (s2.14) and the row l of the light (s2.23). For a back face, N is negated.
@@ -18,7 +18,7 @@ pub fn intensity(normal: [i16; 3], row: &[i32; 3], facing: Facing) -> u32 {
     nearest(towards, 37 - 8).clamp(0, 1 << 8) as u32
 }
 
-/// Multiplies each channel of a colour by its share (u1.8, at most 1) and rounds to nearest.
+/// Multiplies each channel of a colour by a factor (u1.8, at most 1), and rounds to nearest.
 pub fn lit(colour: Rgb565, shares: [u32; 3]) -> Rgb565 {
     let channels = colour.channels();
     let [r, g, b] =
@@ -27,12 +27,12 @@ pub fn lit(colour: Rgb565, shares: [u32; 3]) -> Rgb565 {
 }
 
 /// The light L of a vertex (docs/formats/triangle.md, "Smooth shading"): red, green and blue after shading. Each channel is a fraction of
-/// its range in u0.14, at most 63/64.
+/// the channel's range, u0.14, at most 63/64.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Lit(pub [u16; 3]);
 
 impl Lit {
-    /// Multiplies each channel of a colour by its share (u1.8, at most 1), exactly.
+    /// Multiplies each channel of a colour by a factor (u1.8, at most 1), without rounding.
     pub fn new(colour: Rgb565, shares: [u32; 3]) -> Self {
         let channels = colour.channels();
         let [r, g, b] = [0, 1, 2].map(|i| u32::from(channels[i]) * shares[i]);
@@ -49,7 +49,7 @@ impl Lit {
 }
 
 /// The light of a vertex, for front faces and for back faces.
-// Aligned to words, so that it is always copied by words.
+// Aligned to words, so that copies are always made in words.
 #[repr(align(4))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Light {
@@ -60,8 +60,8 @@ pub struct Light {
 }
 
 impl Light {
-    /// Returns the light of a vertex of a mesh with this colour and normal; `row` is the row of the light, and `shares` returns the
-    /// share of each channel for an intensity.
+    /// Returns the light of a vertex with this colour and normal. `row` is the row of the light, and `shares` returns the factor of each
+    /// channel for an intensity.
     pub fn new(
         colour: Rgb565,
         normal: [i16; 3],
@@ -89,7 +89,7 @@ impl Light {
         Lit([0, 1, 2].map(|channel| front[channel].max(back[channel])))
     }
 
-    /// Combines two lights by `operation`, channel by channel and separately for front and back faces.
+    /// Combines two lights with `operation`, separately for each channel and for front and back faces.
     pub fn zip_with(self, other: Self, operation: impl Fn(u16, u16) -> u16) -> Self {
         let both = |Lit(a): Lit, Lit(b): Lit| {
             Lit([0, 1, 2].map(|channel| operation(a[channel], b[channel])))

@@ -12,16 +12,16 @@ use crate::triangle::quotient::{CHANNEL_BITS, LARGEST};
 use crate::triangle::setup::{Oriented, Plane, Setup, WEIGHT};
 use crate::triangle::shade::HALF_CODE;
 
-/// Fraction bits of a coordinate in the mesh, s16.16.
+/// Number of fraction bits of a coordinate in the mesh, s16.16.
 const COORDINATE_BITS: u32 = 16;
-/// Fraction bits of a share σ of the range of a coordinate, u0.17.
+/// Number of fraction bits of σ, the fraction of a coordinate's range, u0.17.
 const SHARE_BITS: u32 = 17;
 /// Largest base-2 logarithm of the range of a coordinate on a triangle.
 const MAX_RANGE_LOG2: u32 = 15;
-/// The offsets to which a clamped coordinate on a triangle is relative, in periods of two repeats. With the last offset, the coordinate
-/// exceeds 1 everywhere on the triangle.
+/// Range of the offsets to which a clamped coordinate on a triangle is relative, in periods of two repeats. With the last offset, the
+/// coordinate exceeds 1 everywhere on the triangle.
 const PERIODS: RangeInclusive<i64> = -8..=1;
-/// Fraction bits of a position in texels.
+/// Number of fraction bits of a position in texels.
 const PLACE_BITS: u32 = 8;
 /// Number of bits of a weight in bilinear filtering.
 const WEIGHT_BITS: u32 = 4;
@@ -29,7 +29,7 @@ const WEIGHT_BITS: u32 = 4;
 /// A triangle with a texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Textured<'a> {
-    /// The texture.
+    /// The texture to draw.
     pub texture: Texture<'a>,
     /// The planes of the coordinates s and t.
     pub axes: [Axis; 2],
@@ -39,14 +39,14 @@ pub struct Textured<'a> {
     pub weight: Option<u32>,
 }
 
-/// The texture of a triangle in a descriptor: a [`Textured`] with the number in the frame's table in place of the texture.
+/// The texture of a triangle in a descriptor: a [`Textured`] with the number of the texture in the frame's table in place of the texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OfTexture {
     /// Number of the texture in the frame's table, from 1.
     pub number: u8,
     /// The planes of the coordinates s and t.
     pub axes: [Axis; 2],
-    /// Light under flat shading.
+    /// Light of each channel under flat shading, u0.8, as for [`lit`].
     pub light: [u8; 3],
     /// The weight of the coordinates in orthographic projection.
     pub weight: Option<u32>,
@@ -64,7 +64,7 @@ impl OfTexture {
     }
 }
 
-/// The textures on a mesh, and the coordinates of its vertices.
+/// The textures on a mesh, and the texture coordinates of the vertices.
 #[derive(Clone, Copy, Debug)]
 pub struct MeshTextures<'a> {
     mesh: Mesh<'a>,
@@ -74,7 +74,7 @@ pub struct MeshTextures<'a> {
 }
 
 impl<'a> MeshTextures<'a> {
-    /// The textures of a mesh, or a replacement texture for each of them; `None` if the mesh has no textures or no texture coordinates, or
+    /// The textures of a mesh, or a replacement texture for all of them; `None` if the mesh has no textures or no texture coordinates, or
     /// if textures are not drawn.
     pub fn new(
         mesh: &Mesh<'a>,
@@ -92,8 +92,8 @@ impl<'a> MeshTextures<'a> {
         })
     }
 
-    /// The texture of a triangle, with the coordinates s and t of its vertices; `None` for a triangle without a texture. `first` is the
-    /// number in the mesh of the first vertex of the triangle's chunk.
+    /// The texture of a triangle, and the coordinates s and t at its vertices; `None` for a triangle without a texture. `first` is the
+    /// index in the mesh of the first vertex of the triangle's chunk.
     pub fn of(&self, first: usize, triangle: &Triangle) -> Option<(Texture<'a>, [[i32; 2]; 3])> {
         let number = usize::from(triangle.texture).checked_sub(1)?;
         let texture = match self.replacement {
@@ -103,7 +103,7 @@ impl<'a> MeshTextures<'a> {
         let coordinates = triangle.indices.map(|index| {
             let at = TextureCoordinates::BYTES * (first + usize::from(index));
             let element = self.coordinates.get(at..).and_then(<[u8]>::first_chunk);
-            // Every vertex of a checked mesh has an element.
+            // Every vertex of a checked mesh has texture coordinates.
             let element = element.map_or(TextureCoordinates::default(), |element| {
                 TextureCoordinates::from_bytes(element)
             });
@@ -113,7 +113,7 @@ impl<'a> MeshTextures<'a> {
     }
 }
 
-/// A coordinate of a texture on a triangle.
+/// One texture coordinate, s or t, on a triangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Axis {
     /// The plane of σ times the depth, or times a constant in orthographic projection. The coordinate is
@@ -121,13 +121,13 @@ pub struct Axis {
     pub plane: Plane,
     /// Base-2 logarithm of the range of the coordinate, in repeats of the texture; 0 to 15.
     pub range_log2: u32,
-    /// Offset of the coordinate in periods of two repeats, −8 to 1; only clamping uses it.
+    /// Offset of the coordinate in periods of two repeats, −8 to 1; used only for clamping.
     pub periods: i32,
 }
 
 impl<'a> Textured<'a> {
-    /// Computes the planes of a triangle in perspective or, if `is_linear`, in orthographic projection. `coordinates` are s and t of its
-    /// vertices, s16.16, in the order of the vertices of `triangle`.
+    /// Computes the planes of a triangle in perspective or, if `is_linear`, in orthographic projection. `coordinates` are the s and t of
+    /// each vertex, s16.16, in the order of the vertices of `triangle`.
     ///
     /// Not inlined, so that triangles without textures do not load this code into the instruction cache.
     #[inline(never)]
@@ -157,8 +157,9 @@ impl<'a> Textured<'a> {
         }
     }
 
-    /// The colour of a pixel, as of [`lit`], from its depth accumulator plus half a code, the accumulators of its coordinates, its mip level, and under
-    /// smooth shading the accumulators of its light; `None` where the texture is transparent.
+    /// The colour of a pixel, in the format of [`lit`]; `None` where the texture is transparent. `depth` is the depth accumulator plus half
+    /// a code, `values` are the accumulators of the coordinates, `level` is the mip level, and `light` has the accumulators of the light
+    /// under smooth shading.
     pub fn colour(
         &self,
         depth: u32,
@@ -203,8 +204,8 @@ impl<'a> Textured<'a> {
         })
     }
 
-    /// The mip level of a pixel: the level at which neighbouring pixels are 0.75 to 1.5 texels apart, within an eighth. The largest
-    /// distance counts, of both coordinates and both directions on the screen.
+    /// The mip level of a pixel: the level at which neighbouring pixels are 0.75 to 1.5 texels apart, with an error of up to an eighth. The
+    /// distance is the largest for both coordinates and both directions on the screen.
     pub fn level(&self, setup: &Setup, depth: u32, values: [u32; 2]) -> u32 {
         let last = self.texture.levels() - 1;
         if last == 0 {
@@ -220,7 +221,7 @@ impl<'a> Textured<'a> {
             let axis = &self.axes[i];
             let share = inverse.share(values[i], SHARE_BITS) as i64 & ((1 << SHARE_BITS) - 1);
             let change = |step: u32, depth_step: u32| {
-                // In units of 2^8 of the accumulators, rounded down, so that one DSP block computes each product.
+                // The steps are truncated to multiples of 2^8, so that one DSP block computes each product.
                 let [step, depth_step] = [step, depth_step].map(|step| i64::from(step as i32 >> 8));
                 let change = (step << SHARE_BITS) - (share + 1) * depth_step;
                 // The magnitude, less 1 for a negative number.
@@ -230,7 +231,7 @@ impl<'a> Textured<'a> {
             let most = change(axis.plane.step_x, across).max(change(axis.plane.step_y, down));
             let lead = most.max(1).ilog2();
             let unit = 8 + CHANGE_CUT - SHARE_BITS;
-            // The position of the leading bit, for a change in texels times the depth, and the three bits below the leading bit.
+            // The code of a change in texels times the depth: the position of the leading bit, then the three bits below the leading bit.
             ((lead + unit + axis.range_log2 + sides[i]) << 3) + ((most << 3 >> lead) as u32 & 7)
         });
         level_of(most[0].max(most[1]), &inverse).min(last)
@@ -260,10 +261,11 @@ pub fn weight(is_linear: bool) -> Option<u32> {
 impl Axis {
     fn new(triangle: &Oriented, setup: &Setup, coordinates: [i32; 3], weights: [u32; 3]) -> Self {
         let [a, b, c] = coordinates.map(i64::from);
-        // Two repeats are a period of a mirrored texture.
+        // The period of a mirrored texture is two repeats.
         let periods = a.min(b).min(c) >> (COORDINATE_BITS + 1);
         let [a, b, c] = [a, b, c].map(|x| (x - (periods << (COORDINATE_BITS + 1))) as u64);
-        // A share is below 63/64, the limit of light, so the highest bits of an accumulator show whether it is just below 0.
+        // A fraction of the range is below 63/64, like light, so the highest bits of an accumulator show whether the accumulator is just
+        // below 0.
         let limit = |range_log2: u32| 63 << (COORDINATE_BITS + range_log2 - 6);
         let most = a.max(b).max(c);
         let mut range_log2 = 0;
@@ -272,7 +274,7 @@ impl Axis {
         }
         let [a, b, c] = [a, b, c].map(|x| x.min(limit(MAX_RANGE_LOG2) - 1));
         let weighted = |coordinate: u64, weight: u32| {
-            // A share is exact for a range of at most two repeats.
+            // The fraction is exact for a range of at most two repeats.
             let share = ((coordinate << 2 >> range_log2) + 1) >> 1;
             let product = share * u64::from(weight + HALF_CODE);
             ((product + (1 << (SHARE_BITS - 1))) >> SHARE_BITS) as u32
@@ -290,10 +292,11 @@ impl Axis {
     }
 }
 
-/// Number of low bits that [`Textured::level`] cuts from a change, so that 30 bits remain.
+/// Number of low bits that [`Textured::level`] removes from a change, so that 30 bits remain.
 const CHANGE_CUT: u32 = 13;
 
-/// `INVERSES[i]` is 2^20/(1 + i/512) to nearest, u0.20, for i up to 512. The first entry is 3 less, so that every inverse is below 1.
+/// `INVERSES[i]` is 2^20/(1 + i/512), rounded to nearest, u0.20, for i up to 512. The first entry is reduced by 3, so that every inverse is
+/// below 1.
 const INVERSES: [u32; 513] = {
     let mut table = [(1 << 20) - 3; 513];
     let mut i = 1;
@@ -335,10 +338,10 @@ impl Inverse {
 
     /// An accumulator divided by the depth, with `bits` fraction bits, rounded down.
     fn share(&self, value: u32, bits: u32) -> u64 {
-        // As for light, the highest six bits of an accumulator that is just below 0 are ones; it counts as 0.
+        // As for light, an accumulator whose highest six bits are ones is just below 0, and counts as 0.
         let value = if value >> 26 == 0x3F { 0 } else { value >> 8 };
         let product = u64::from(value) * u64::from(self.mantissa);
-        // The product has 42 bits; 41 − `zeros` of them are fraction bits of the share.
+        // The product has 42 bits, of which 41 − `zeros` are fraction bits of the result.
         let fraction = 41 - self.zeros;
         if bits <= fraction {
             product >> (fraction - bits)
@@ -348,8 +351,8 @@ impl Inverse {
     }
 }
 
-/// The smallest level l, at least 0, with change/depth ≤ 1.5·2^l, for both numbers truncated to their four leading bits. `most` is the
-/// change, coded as the position of its leading bit, and in the three lowest bits the bits below the leading bit.
+/// The smallest level l, at least 0, with change/depth ≤ 1.5·2^l, where both numbers are truncated to their four leading bits. `most` is
+/// the code of the change: the position of the leading bit, then in the three lowest bits the bits below the leading bit.
 fn level_of(most: u32, inverse: &Inverse) -> u32 {
     let (lead, most, depth) = ((most >> 3) as i32, 8 + (most & 7), 8 + inverse.top);
     let depth_lead = 31 - inverse.zeros as i32;
@@ -383,7 +386,7 @@ pub fn sample(texture: &Texture, level: u32, places: [i64; 2]) -> Option<[u8; 3]
             Some([r << 3, g << 2, b << 3])
         }
         Filter::Bilinear => {
-            // Half a texel to the upper left, plus half a unit of the weights.
+            // Moves the position half a texel to the upper left, and adds half a unit of the weights for rounding.
             let corner = places.map(|place| place - 128 + 8);
             let [x, y] = corner.map(|place| place >> PLACE_BITS);
             let weights = corner.map(|place| (place >> WEIGHT_BITS & 0xF) as u32);
@@ -395,8 +398,8 @@ pub fn sample(texture: &Texture, level: u32, places: [i64; 2]) -> Option<[u8; 3]
     }
 }
 
-/// The average of four neighbours, given by their channels: (u, v), (u + 1, v), (u, v + 1), (u + 1, v + 1). `weights` are those of u + 1
-/// and v + 1, u0.4. A channel of the result has 8 bits, as in [`sample`].
+/// The weighted average of the channels of four neighbouring texels: (u, v), (u + 1, v), (u, v + 1), (u + 1, v + 1). `weights` are the
+/// weights of u + 1 and v + 1, u0.4. A channel of the result has 8 bits, as in [`sample`].
 pub fn average(neighbours: [[u8; 3]; 4], weights: [u32; 2]) -> [u8; 3] {
     [0, 1, 2].map(|channel: usize| {
         let [a, b, c, d] = neighbours.map(|texel| u32::from(texel[channel]));
@@ -409,8 +412,8 @@ pub fn average(neighbours: [[u8; 3]; 4], weights: [u32; 2]) -> [u8; 3] {
     })
 }
 
-/// Multiplies a colour of [`sample`] by the light of each channel. The light is u0.8. The largest light is 31/32 for red and blue and 63/64
-/// for green; it leaves the colour unchanged. A channel of the result has 8 bits, as in [`sample`].
+/// Multiplies a colour of [`sample`] by the light of each channel, u0.8. The largest light is 31/32 for red and blue, and 63/64 for green,
+/// and does not change the colour. A channel of the result has 8 bits, as in [`sample`].
 pub fn lit(texel: [u8; 3], light: [u8; 3], rounding: Rounding) -> [u8; 3] {
     [0, 1, 2].map(|i: usize| {
         let light = u32::from(light[i]);
@@ -421,7 +424,7 @@ pub fn lit(texel: [u8; 3], light: [u8; 3], rounding: Rounding) -> [u8; 3] {
     })
 }
 
-/// The light of a flat triangle for [`lit`]: its colour times the share of each channel, u1.8.
+/// The light of a flat triangle for [`lit`]: the colour of the triangle times the factor of each channel, u1.8.
 pub fn flat_light(colour: Rgb565, shares: [u32; 3]) -> [u8; 3] {
     let channels = colour.channels();
     [0, 1, 2].map(|i: usize| {

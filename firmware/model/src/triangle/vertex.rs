@@ -1,4 +1,4 @@
-//! The vertex stage: from a position in the mesh to a position on the screen.
+//! The vertex stage, which transforms a position in the mesh to a position on the screen.
 
 use glint_core::camera::Projection;
 
@@ -7,7 +7,7 @@ use crate::triangle::reciprocal::Reciprocal;
 use crate::triangle::rounding::nearest;
 use crate::triangle::shade::Light;
 
-/// Extent of the guard band: 2047 pixels from the top left corner in every direction, s12.8.
+/// Extent of the guard band from the top left corner in every direction: 2047 pixels, s12.8.
 pub const GUARD: i32 = 2047 << 8;
 
 /// Positions saturate at this distance from the centre: 4096 pixels, 12 fraction bits.
@@ -49,7 +49,7 @@ pub enum Projected {
     /// Nearer than the near plane, or behind the eye.
     Behind,
     /// Beyond the near plane, but outside the guard band, or outside a view volume to which triangles are clipped. A position outside the
-    /// guard band may be saturated, so it only shows beyond which sides of the picture the vertex is.
+    /// guard band may be saturated, so such a position only shows beyond which sides of the picture the vertex is.
     BeyondGuard(ScreenVertex),
 }
 
@@ -130,7 +130,7 @@ pub fn snap(frame: &MeshSetup, vertex: &CameraVertex) -> ScreenVertex {
     }
 }
 
-/// Projects a vertex to the screen in orthographic projection: X and Y are its position in pixels, and its depth code is linear in Z.
+/// Projects a vertex to the screen in orthographic projection: X and Y are the position in pixels, and the depth code is linear in Z.
 ///
 /// Not inlined, so that the loop over vertices in perspective does not load this code into the instruction cache.
 #[inline(never)]
@@ -140,7 +140,7 @@ fn snap_orthographic(frame: &MeshSetup, vertex: &CameraVertex) -> ScreenVertex {
         let normalised = nearest(x, frame.scale_shift + 2).clamp(-LIMIT, LIMIT - 1);
         (middle << 8) as i32 + nearest(normalised, 4) as i32
     };
-    // Z is below 2^(36 + ke), with ke in −6…5; other depths, of a mesh beyond its radius, wrap.
+    // Z is below 2^(36 + ke), with ke in −6…5. Only a vertex outside of the mesh's radius has other depths, which wrap.
     let m = (vertex.z >> (12 + frame.depth.exponent)) & BITS;
     ScreenVertex {
         x: place(vertex.x, frame.middle[0]),

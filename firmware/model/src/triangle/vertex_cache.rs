@@ -1,4 +1,4 @@
-//! The engine's cache of processed vertices, which determines the vertices of a mesh that the engine fetches.
+//! The engine's cache of processed vertices, which determines how often the engine fetches the vertices of a mesh.
 
 use glint_core::mesh::Mesh;
 
@@ -20,7 +20,7 @@ impl VertexCache {
         }
     }
 
-    /// Looks up a vertex by its index in the chunk; returns whether it has to be fetched. Afterwards the vertex is in the cache.
+    /// Looks up a vertex by its index in the chunk, and adds the vertex to the cache. Returns whether the engine must fetch the vertex.
     pub fn misses(&mut self, index: u16) -> bool {
         let slot = self.slots.get_mut(usize::from(index) % SLOTS);
         slot.is_none_or(|slot| slot.replace(index) != Some(index))

@@ -2,7 +2,7 @@
 
 use glint_core::fixed::U8_28;
 
-/// The clipping of triangles.
+/// Which triangles are clipped, and to which volume.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Clip {
     /// Triangles that cross the near plane or leave the guard band are clipped. There is no far plane.
@@ -17,7 +17,7 @@ pub enum Clip {
 }
 
 impl Clip {
-    /// Clipping to the view volume up to a far plane at this distance from the eye, in world units; without one, the default.
+    /// Clipping to the view volume up to a far plane at this distance from the eye, in world units; the default clipping for `None`.
     pub const fn to(far: Option<U8_28>) -> Self {
         match far {
             None => Self::Guard,
@@ -29,7 +29,7 @@ impl Clip {
 /// The volume to which triangles are clipped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Volume {
-    /// Beyond the near plane and inside the guard band: the triangle engine's volume, which cuts the fewest triangles.
+    /// Beyond the near plane and inside the guard band: the triangle engine's volume, with which the fewest triangles are clipped.
     #[default]
     Guard,
     /// The view volume: inside the picture, and between the near plane and a far plane.
@@ -40,8 +40,8 @@ pub enum Volume {
 }
 
 impl Volume {
-    /// The distances in half pixels from the middle of the picture, `picture` pixels wide or high, to the two sides of the volume.
-    /// `middle` is the place of the middle in the window.
+    /// The distances in half pixels from the middle of the picture to the two sides of the volume along one axis. `picture` is the width or
+    /// height of the picture in pixels, and `middle` is the position of its middle in the window.
     pub fn sides(self, picture: u32, middle: u32) -> [i64; 2] {
         let [picture, twice] = [picture, 2 * middle].map(i64::from);
         // The guard band ends at ±2047.5 pixels from the first column.

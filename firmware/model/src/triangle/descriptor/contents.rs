@@ -17,16 +17,17 @@ use crate::triangle::textured::{Axis, OfTexture, weight};
 /// The primitive that a descriptor in memory describes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Contents {
-    /// A triangle, with its colour under flat shading, and its texture if it has one. The left and right bounds are rounded to groups.
+    /// A triangle, the triangle's colour under flat shading, and the texture if the triangle has one. The left and right bounds are rounded
+    /// to groups.
     Triangle(Setup, Rgb565, Option<OfTexture>),
     /// A piece of a line.
     Piece(Piece),
-    /// A damaged triangle, whose groups are not in the picture; it is not drawn.
+    /// A damaged triangle, whose groups are not in the picture, and which is not drawn.
     Stray,
 }
 
 impl OfTexture {
-    /// The texture for the part of its triangle that begins `rows` rows below the triangle's top.
+    /// The texture for the part of the triangle that begins `rows` rows below the triangle's top.
     pub fn moved(&self, rows: i32) -> Self {
         let axes = self.axes.map(|axis| Axis {
             plane: axis.plane.moved_down(rows),
