@@ -21,8 +21,8 @@ pub struct DepthScale {
 const LINEAR_CODES: i64 = (1 << 18) - 8;
 
 impl DepthScale {
-    /// Returns the scale for a mesh with the given `radius` (14 fraction bits). `origin` is the depth of the world's
-    /// origin and `near` the depth of the near plane, each with 37 fraction bits.
+    /// Returns the scale for a mesh with the given `radius` (14 fraction bits). `origin` is the depth of the world's origin, and `near` is
+    /// the depth of the near plane; both have 37 fraction bits.
     ///
     /// The scale is (2^18 − 4) times the smallest possible depth of the mesh: the depth of the near plane, or of the nearest point of the
     /// mesh's bounding sphere about the origin if that is farther. The length of the axis n may be 1 + 10^−4, so the radius is multiplied
@@ -44,8 +44,8 @@ impl DepthScale {
         Self::cut(scale, -37)
     }
 
-    /// Returns the scale of an orthographic frame for depths from `nearest` to `farthest`, with 37 fraction bits: the smallest power of
-    /// two, at least 2^(`least` − 19) world units per code, with which every depth has a code. `nearest` has the code 2^18 − 4.
+    /// Returns the scale of an orthographic frame for depths from `nearest` to `farthest`, with 37 fraction bits. The world units per code
+    /// are the smallest power of two, at least 2^(`least` − 19), for which every depth has a code. `nearest` has the code 2^18 − 4.
     pub(crate) fn linear(nearest: i64, farthest: i64, least: i32) -> Self {
         // One code is 2^(18 + ke) units of a depth. Depths differ by less than 2^46, so the loop ends at an exponent of at most 10.
         let mut exponent = least;

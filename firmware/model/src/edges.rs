@@ -19,8 +19,8 @@ pub use list::EdgeList;
 /// The colour of the edges: white.
 pub const EDGE_COLOUR: Rgb565 = Rgb565::WHITE;
 
-/// The biases, in depth codes, that keep lines at the border of a face in front of the face: for a line with a pixel in each row, and for
-/// a line with a pixel in each column. Without a face they are 0.
+/// The biases, in depth codes, that keep lines at the border of a face in front of the face: for a line with one pixel in each row, and for
+/// a line with one pixel in each column. Both are 0 without a face.
 type Biases = [u16; 2];
 
 /// Counts of the edges of a frame.
@@ -28,7 +28,7 @@ type Biases = [u16; 2];
 pub struct EdgeStats {
     /// Number of edges of the mesh.
     pub edges: u32,
-    /// Number of edges drawn as lines, because a part of them is in the view volume of the frame.
+    /// Number of edges drawn as lines: those with a part in the view volume of the frame.
     pub drawn: u32,
 }
 
@@ -40,7 +40,7 @@ impl EdgeStats {
     }
 }
 
-/// A corner of a face, or an end of an edge: its position in the mesh, and the vertex after the vertex stage.
+/// A corner of a face, or an end of an edge: the position in the mesh, and the output of the vertex stage.
 type Corner<'a> = ([i16; 3], &'a Projected);
 
 /// The biases for a face with these corners; 0 for a face without area on the screen, and with `cull` for a back face.
@@ -74,7 +74,7 @@ fn clipped_face(frame: &MeshSetup, corners: &[Corner; 3], cull: bool) -> Biases 
     };
     let parts = rest.iter().zip(rest.iter().skip(1));
     let parts = parts.map(|(b, c)| [first, b, c]);
-    // The slopes are most exact in the largest part of the polygon.
+    // The largest triangle of the polygon gives the most exact slopes.
     let Some(part) = parts.max_by_key(|part| doubled_area(*part).unsigned_abs()) else {
         return Biases::default();
     };
@@ -93,10 +93,12 @@ const fn is_drawn(frame: &MeshSetup, area: i64, cull: bool) -> bool {
     area != 0 && !(cull && is_back)
 }
 
-/// The biases for a face, from three of its vertices, the doubled area of their triangle, and the depth range of all vertices of the face.
+/// The biases for a face, from three vertices of the face, twice the area of the triangle of these vertices, and the depth range of all
+/// vertices of the face.
 ///
-/// A pixel of a line is up to half a pixel away from the edge, along its minor axis. There the face is nearer than the edge by at most
-/// half its slope, and by at most its depth range; rounding of both depths adds 1.52 codes.
+/// A pixel of a line is up to half a pixel away from the edge, along the line's minor axis. At the pixel's centre the face is nearer than
+/// the edge by at most half the slope of the face, and by at most the depth range of the face. Rounding of both depths adds up to 1.52
+/// codes.
 #[inline(never)]
 fn biases([a, b, c]: [&ScreenVertex; 3], area: i64, range: u32) -> Biases {
     // Depths have 24 bits, so their differences fit 32 bits.
@@ -141,7 +143,7 @@ fn segment(frame: &MeshSetup, ends: [&Corner; 2], biases: Biases) -> Option<Segm
     })
 }
 
-/// The ends on the screen of the part of an edge that is in the view volume.
+/// The screen positions of the ends of an edge after clipping to the view volume.
 ///
 /// Not inlined, so that other edges do not load this code into the instruction cache.
 #[inline(never)]

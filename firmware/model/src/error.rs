@@ -16,7 +16,7 @@ pub const SIZES: [(u32, u32); 3] = {
     ]
 };
 
-/// The whole picture of this width and height.
+/// The window that covers the whole picture of this width and height.
 ///
 /// # Errors
 /// [`RenderError::Size`] for a size that is not one of the [`SIZES`].
@@ -32,7 +32,7 @@ pub const MAX_EYE: u32 = 8;
 /// Smallest and largest half width of the camera in a frame with a field, in world units. This bounds the directions of rays.
 pub const FIELD_HALF_WIDTH: [U8_28; 2] = [U8_28::lit("0.05"), U8_28::lit("4")];
 
-/// One of the buffers of a picture.
+/// A buffer of a picture, for [`RenderError::Buffer`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Buffer {
     /// Colours of the pixels.
@@ -53,7 +53,7 @@ pub enum RenderError {
     },
     /// A buffer does not have exactly one element for each pixel.
     Buffer {
-        /// The buffer.
+        /// The buffer of the wrong size.
         buffer: Buffer,
         /// Number of pixels of the picture.
         expected: usize,
@@ -62,9 +62,9 @@ pub enum RenderError {
     },
     /// The scratch memory holds fewer vertices than the largest chunk of the mesh has.
     Scratch {
-        /// Number of vertices of the largest chunk.
+        /// Number of vertices in the largest chunk.
         expected: usize,
-        /// Number of vertices that fit the scratch memory.
+        /// Number of vertices that the scratch memory holds.
         found: usize,
     },
     /// The memory for the list of a mesh's edges is too small.
@@ -164,7 +164,7 @@ impl fmt::Display for RenderError {
                 write!(f, "window: expected sides within {most} of the camera's axis, and a half height of at least 9/16 * {least}, with a field")
             }
             Self::Window => f.write_str(
-                "window: expected it closer to the camera's axis, or wider and higher, for a picture of this width",
+                "window: expected a centre closer to the camera's axis, or a larger width and height, for a picture of this width",
             ),
             Self::Objects(found) => {
                 write!(f, "{found} objects: expected at most {MAX_OBJECTS}")

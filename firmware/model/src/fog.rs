@@ -1,4 +1,4 @@
-//! Fog on meshes: the share of a pixel's colour that the fog hides, by its depth code (docs/formats/triangle.md, "Fog").
+//! Fog on meshes: the fraction of a pixel's colour that the fog replaces, from the pixel's depth code (docs/formats/triangle.md, "Fog").
 
 use glint_core::colour::Rgb565;
 use glint_core::fixed::U4_28;
@@ -8,24 +8,24 @@ use crate::raymarch::{FULL, faded, mixed, product};
 
 /// Fog in a frame. Its transmittance is e^(−x), with x = density·z at the depth z along the camera's forward axis, in world units.
 ///
-/// In perspective z is K divided by the depth code, so x needs no division where its logarithm is used: −log2 x is log2 of the code less
-/// log2(density·K), a constant of the frame.
+/// In perspective z is K divided by the depth code. The logarithm of x needs no division: −log2 x is log2 of the code minus
+/// log2(density·K), which is a constant of the frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fog {
-    /// The index in the table of shares is 128·log2 of the code less this offset; in orthographic projection it is the negative of 128·log2
-    /// of the depth, less this offset.
+    /// The index into the table of shares is 128·log2(code) − `offset`; in orthographic projection it is −128·log2(depth) − `offset`.
     pub offset: i32,
-    /// Colour of the fog: the integer parts of red, green and blue have 5, 6 and 5 bits, as in RGB565, and fraction bits follow.
+    /// Colour of the fog: in 8 bits per channel, the upper 5, 6 and 5 bits of red, green and blue are the RGB565 value, and the remaining
+    /// bits are fraction bits.
     pub colour: [u8; 3],
-    /// In orthographic projection, the scale of the depth codes.
+    /// The scale of the depth codes in orthographic projection; `None` in perspective.
     linear: Option<DepthScale>,
 }
 
-/// Base-2 logarithm of the number of steps of an octave.
+/// Base-2 logarithm of the number of table entries per octave.
 const STEPS_LOG2: u32 = 7;
-/// The octaves of the table of shares: x from 2^3, which hides all, to 2^−9, which hides nothing.
+/// Number of octaves of the table of shares. They cover x from 2^3, where the fog hides everything, to 2^−9, where it hides nothing.
 const OCTAVES: usize = 12;
-/// Base-2 logarithm of the largest x of the table.
+/// Base-2 logarithm of the largest x in the table.
 const DENSEST: i32 = 3;
 
 impl Fog {
@@ -35,9 +35,9 @@ impl Fog {
             return None;
         }
         let (factor, exponent) = match depth.origin {
-            // density·K; the product has at most 49 bits.
+            // The logarithm is of density·K; this product has at most 49 bits.
             None => (depth.mantissa, depth.exponent - 28),
-            // The density; a depth has 37 fraction bits.
+            // The logarithm is of the density alone; a depth has 37 fraction bits.
             Some(_) => (1, -28 - 37),
         };
         let logarithm = fine_log2(u64::from(density.to_bits()) * u64::from(factor));
@@ -48,7 +48,7 @@ impl Fog {
         })
     }
 
-    /// The fog of an engine's registers, for a frame in perspective.
+    /// The fog with the values of an engine's registers, for a frame in perspective.
     pub const fn in_perspective(offset: i32, colour: [u8; 3]) -> Self {
         Self {
             offset,
@@ -57,12 +57,12 @@ impl Fog {
         }
     }
 
-    /// Whether the engine computes this fog: in perspective.
+    /// Whether the engine can compute this fog, which it can only in perspective.
     pub const fn is_in_perspective(&self) -> bool {
         self.linear.is_none()
     }
 
-    /// The share that the fog hides at a depth code, in 255ths.
+    /// The share of a colour that the fog hides at a depth code, in 255ths.
     pub fn share(&self, code: u32) -> u8 {
         let index = match self.linear {
             None => log2(code.into()) - self.offset,
@@ -95,7 +95,7 @@ const SHARES: [u8; OCTAVES << STEPS_LOG2] = {
     table
 };
 
-/// 128·log2 of a number from its highest eight bits, within 1.3; 0 for the number 0.
+/// 128·log2 of a number, computed from its highest eight bits with an error of up to 1.3; 0 for the number 0.
 fn log2(number: u64) -> i32 {
     /// `MORE[m]` is 128·log2(1 + (m + 1/2)/128) − m, to nearest.
     const MORE: [u8; 128] = {

@@ -1,7 +1,7 @@
-//! A frame: the description of one picture, its constants, and its drawing by the model.
+//! A frame: the description of one picture, the constants computed from it, and its drawing by the model.
 //!
-//! The CPU backend, the gateware backend and the host share these types. [`Frame`] is the description, [`FrameConstants`] are computed
-//! once per frame, and [`Frame::draw`] draws the picture in integers, bit for bit as the gateware does.
+//! The CPU backend, the gateware backend and the host share these types. [`Frame`] is the description, [`FrameConstants`] are computed once
+//! per frame, and [`Frame::draw`] draws the picture in integer arithmetic, bit for bit as the gateware does.
 
 mod constants;
 mod description;
@@ -29,7 +29,7 @@ const TRIANGLES_PER_CALL: u32 = 32;
 /// Number of pixels of a field that are drawn between two calls of `progress` in [`Frame::draw`].
 const PIXELS_PER_CALL: u32 = 16;
 
-/// Counts of the work of drawing a frame.
+/// Counts of the triangles, rays, lines and pixels of a drawn frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrameStats {
     /// Counts of the mesh, if any.
@@ -95,8 +95,8 @@ impl Frame<'_> {
     }
 
     /// Draws the samples of the frame's [window](Self::window) into `buffer` from the frame's `constants`, with `scratch` as memory for
-    /// projected vertices; sets the buffer's rounding. The edges of [`Subject::Edges`], and the rectangles in front of them, are left to
-    /// [`draw_edges`](Self::draw_edges). Calls `progress` at short intervals.
+    /// projected vertices. Sets the buffer's rounding. Does not draw the edges of [`Subject::Edges`] and the rectangles in front of them,
+    /// which [`draw_edges`](Self::draw_edges) draws. Calls `progress` at short intervals.
     ///
     /// # Errors
     /// [`RenderError`] for a buffer or scratch memory of the wrong size.
@@ -117,7 +117,7 @@ impl Frame<'_> {
                 subject, self.clear, window, samples, buffer, progress,
             )?);
         }
-        // A field covers every pixel. Meshes are drawn over it, so that what they blend with the picture may be in front of it.
+        // A field covers every pixel. Meshes are drawn after the field, so that their blended textures can be in front of the field.
         let field = constants.field();
         if let Some(FieldConstants { setup, palette }) = field {
             buffer.depth.fill(0);

@@ -4,7 +4,7 @@ use glint_core::colour::Rounding;
 
 use crate::error::{Buffer, RenderError, SIZES};
 
-/// The memory of one picture. Rows follow each other from the top, without padding.
+/// The memory of one picture, stored row by row from the top, without padding.
 #[derive(Debug)]
 pub struct FrameBuffer<'a> {
     /// Width in pixels.
@@ -43,7 +43,7 @@ impl FrameBuffer<'_> {
 
     /// Fills the picture with the colour `clear` (RGB565) and the depth codes with 0.
     pub(crate) fn clear(&mut self, clear: u16) {
-        // A fill with the constant 0 compiles to a `memset` of whole words.
+        // The compiler makes a `memset` of whole words of a fill with the constant 0.
         match clear {
             0 => self.colour.fill(0),
             clear => self.colour.fill(clear),

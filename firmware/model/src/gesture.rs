@@ -16,17 +16,17 @@ pub use snapshot::{SNAPSHOT_WORDS, Snapshot};
 /// A channel of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Channel {
-    /// Red.
+    /// Red, widened to 8 bits.
     Red,
-    /// Green.
+    /// Green, widened to 8 bits.
     Green,
-    /// Blue.
+    /// Blue, widened to 8 bits.
     Blue,
     /// Luma: 0.299 red + 0.587 green + 0.114 blue.
     Luma,
-    /// Chroma towards red, 128 for grey.
+    /// Red-difference chroma, 128 for grey.
     Cr,
-    /// Chroma towards blue, 128 for grey.
+    /// Blue-difference chroma, 128 for grey.
     Cb,
 }
 
@@ -55,7 +55,7 @@ pub const fn channels(colour: Rgb565) -> [u8; 6] {
     [r, g, b, luma as u8, cr as u8, cb as u8]
 }
 
-/// Settings of a frame.
+/// Settings of the engine for one frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
     /// Columns and lines of a whole frame, at most [`Settings::MAX_SIZE`].
@@ -64,7 +64,7 @@ pub struct Settings {
     pub windows: [(Channel, Window); 2],
     /// The region in which pixels are counted.
     pub region: Region,
-    /// Length from which a run of marked pixels in the region is counted, at most 15; 0 acts as 1.
+    /// Minimum length of a run of marked pixels in the region whose pixels are counted, at most 15; 0 acts as 1.
     pub least_run: u8,
 }
 
@@ -72,7 +72,7 @@ impl Settings {
     /// Columns and lines of the largest frame.
     pub const MAX_SIZE: [u16; 2] = [1280, 720];
 
-    /// Whether a pixel is marked.
+    /// Whether a pixel of this colour is marked.
     pub const fn marks(&self, colour: Rgb565) -> bool {
         let channels = channels(colour);
         let [(a, window_a), (b, window_b)] = self.windows;
@@ -83,13 +83,13 @@ impl Settings {
 /// Sums over the counted pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sums {
-    /// Number of pixels, at most 921,600: u20.
+    /// Number of counted pixels, at most 921,600 (u20).
     pub count: u32,
     /// Sum of the pixels' columns, at most 589,363,200 (u30), and of their lines, at most 331,315,200 (u29).
     pub sums: [u32; 2],
     /// Bounding box of the counted pixels. Without such pixels, `first` is 2047 and `last` 0.
     pub bounds: Region,
-    /// Sums of x·x, x·y and y·y of the pixels, each below 2^39: u40.
+    /// Sums of x·x, x·y and y·y over the pixels, each below 2^39 (u40).
     pub products: [u64; 3],
 }
 
@@ -105,8 +105,8 @@ impl Sums {
         products: [0; 3],
     };
 
-    /// Adds the counted pixels of line `y`: the runs of at least `settings.least_run` marked pixels in the region. `marks` tells for each
-    /// pixel of the line, from the left, whether it is marked.
+    /// Adds the counted pixels of line `y`: the runs of at least `settings.least_run` marked pixels in the region. `marks` yields for each
+    /// pixel of the line, from the left, whether the pixel is marked.
     pub fn add_line(&mut self, settings: &Settings, y: u16, marks: impl Iterator<Item = bool>) {
         let [left, top] = settings.region.first;
         let [right, bottom] = settings.region.last;

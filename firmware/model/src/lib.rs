@@ -1,10 +1,10 @@
 //! Bit-exact software models of Glint's accelerators: the triangle engine, the line engine, the raymarcher and the gesture engine.
 //!
-//! The crate computes the triangle pipeline, the lines and the raymarcher of `docs/formats` in integers. It is the renderer of the CPU
-//! backend, and the oracle of the gateware's tests. A [`Frame`] describes a picture, and [`Frame::draw`] draws it: the mesh of the
-//! picture by [`triangle`], the rays of its distance field by [`raymarch`]; [`line`](mod@line) draws segments, [`edges`] makes the
-//! segments of a mesh's edges, and [`wireframe`] runs the programs of the wireframe simulator. [`gesture`] counts the pixels of a hand in
-//! the frames of an image sensor.
+//! The crate computes the triangle pipeline, the lines and the raymarcher of `docs/formats` in integer arithmetic. It is the renderer of
+//! the CPU backend, and the oracle of the gateware's tests. A [`Frame`] describes a picture, and [`Frame::draw`] draws it: the mesh of the
+//! picture by [`triangle`], the rays of its distance field by [`raymarch`]; [`line`](mod@line) draws segments, [`edges`] makes the segments
+//! of a mesh's edges, and [`wireframe`] runs the programs of the wireframe simulator. [`gesture`] counts the pixels of a hand in the frames
+//! of an image sensor.
 //!
 //! The crate uses no floating point and no allocation, and 128-bit integers only for the tables of fog and for the translation of an
 //! orthographic frame. No sum or product overflows its type, for every camera that [`glint_core::camera::View`] accepts and every mesh:

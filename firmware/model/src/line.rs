@@ -1,8 +1,8 @@
-//! Bit-exact model of the line engine: from two screen vertices to pixels (docs/formats/line.md, "Lines").
+//! Bit-exact model of the line engine, which draws the pixels between two vertices on the screen (docs/formats/line.md, "Lines").
 //!
 //! A line has one pixel in each column if its end points are at least as far apart horizontally as vertically, otherwise one in each row.
-//! The axis along which it is longer is its *major* axis, the other axis its *minor* axis. The diamond-exit rule selects its pixels: a
-//! pixel is drawn if the path from the first to the second end point leaves the pixel's diamond,
+//! The axis along which the line is longer is its *major* axis; the other axis is its *minor* axis. The diamond-exit rule selects its
+//! pixels: a pixel is drawn if the path from the first to the second end point leaves the pixel's diamond,
 //! |x| + |y| < 1/2 about its centre. [`Line::new`] is the setup, [`Line::pixels`] iterates over the pixels in a rectangle, and [`draw`]
 //! writes them. The engine cuts lines into [`Piece`]s.
 
@@ -19,37 +19,38 @@ use crate::triangle::setup::Bounds;
 
 pub use piece::{Piece, band_bounds};
 
-/// End points are in −2048 ≤ x, y < 2048 pixels: s12.8.
+/// Range of the coordinates of end points: −2048 ≤ x, y < 2048 pixels, s12.8.
 const REACH: core::ops::Range<i32> = -(1 << 19)..1 << 19;
 
 /// The largest depth code.
 const NEAREST: i64 = (1 << 18) - 1;
 
-/// The depth test of a line.
+/// How a line is hidden by other pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LineDepth {
-    /// The line covers all other pixels. It is stored with the largest depth code, so that only later lines cover it.
+    /// No depth test: the line covers all other pixels. Its pixels get the largest depth code, so that only later lines cover them.
     Over,
-    /// A pixel is drawn if its depth code is at least the stored code, which it replaces.
+    /// A pixel is drawn if its depth code is at least the stored code.
     Tested {
         /// Bias added to the depth codes of the line, so that it lies in front of the adjacent faces.
         bias: u16,
     },
 }
 
-/// A segment of a picture.
+/// A line segment on the screen, before the setup.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Segment {
     /// The end points, in drawing order.
     pub ends: [ScreenVertex; 2],
-    /// The colour of its pixels.
+    /// Colour of all pixels of the segment.
     pub colour: Rgb565,
-    /// Its depth test.
+    /// How the segment is hidden by other pixels.
     pub depth: LineDepth,
 }
 
-/// Writes an end of a segment, with the depth `w`, to its words in memory.
-// A function and not a loop over the ends, because the compiler would not unroll the loop in the firmware, which is optimised for size.
+/// Writes an end of a segment, with the depth `w`, to `words`.
+// A function that is called for each end, because the compiler would not unroll a loop over the ends in the firmware, which is optimised
+// for size.
 const fn put_end(words: &mut [u32], place: &ScreenVertex, w: u32, side: u16) {
     // Each field starts a word; the remaining bits of the word have no effect.
     words[segment_end::X.word()] = place.x as u32;
@@ -59,12 +60,12 @@ const fn put_end(words: &mut [u32], place: &ScreenVertex, w: u32, side: u16) {
 }
 
 impl Segment {
-    /// Number of 32-bit words in memory.
+    /// Number of 32-bit words of a segment in memory.
     pub const WORDS: usize = 2 * Self::END;
     /// Number of 32-bit words of an end in memory.
     const END: usize = segment_end::BITS / 32;
 
-    /// The segment in memory (docs/formats/line.md, "Segments in memory").
+    /// The words that represent the segment in memory (docs/formats/line.md, "Segments in memory").
     pub const fn words(&self) -> [u32; Self::WORDS] {
         let (w, bias) = match self.depth {
             LineDepth::Over => ([(NEAREST << 6) as u32; 2], 0),
@@ -96,13 +97,15 @@ impl Segment {
         }
     }
 
-    /// The header of a chunk with one vertex and `segments` segments, and the vertex. Together they are as long as a segment.
+    /// The header of a chunk with one vertex and `segments` segments, and this vertex. Header and vertex together have the length of a
+    /// segment.
     pub const fn header(segments: u32) -> [u32; Self::WORDS] {
         [1, 2 * segments, 0, 0, 0, 0, 0, 0]
     }
 
-    /// The lines that draw the segment a pixel wide: one, or with four samples a pixel two, each half a sample from the segment along its
-    /// minor axis. They may be up to a whole sample from it, and so have twice its bias (docs/formats/line.md, "Lines").
+    /// The lines that draw the segment one pixel wide. With one sample per pixel this is the segment itself. With four samples per pixel
+    /// there are two lines, each half a sample from the segment along its minor axis. Their pixels may be up to a whole sample from the
+    /// segment, so their bias is twice the segment's bias (docs/formats/line.md, "Lines").
     pub fn strokes(self, samples: Samples) -> impl Iterator<Item = Self> {
         let [a, b] = self.ends;
         let is_flat = (b.x - a.x).abs() >= (b.y - a.y).abs();
@@ -112,7 +115,7 @@ impl Segment {
         };
         offsets.iter().map(move |&offset| Self {
             ends: self.ends.map(|end| {
-                // An end at the limit of coordinates stays there: it is far outside of the picture.
+                // An end at the limit of the coordinates does not move; such an end is far outside of the picture.
                 let moved = |place: i32| (place + offset).clamp(REACH.start, REACH.end - 1);
                 let (x, y) = if is_flat {
                     (end.x, moved(end.y))
@@ -154,7 +157,7 @@ pub struct LinePixel {
 }
 
 impl LinePixel {
-    /// The depth code, rounded to nearest and saturated to 1…2^18 − 1.
+    /// The depth code: the accumulator rounded to nearest and saturated to 1…2^18 − 1.
     pub fn code(&self, depth: LineDepth) -> u32 {
         let code = match depth {
             LineDepth::Over => NEAREST,
@@ -166,15 +169,15 @@ impl LinePixel {
     }
 }
 
-/// A segment after the setup.
+/// A line segment after the setup, which the engine walks pixel by pixel.
 ///
-/// On an axis along which the segment runs backward, coordinates are mirrored: column or row i becomes −1 − i. The walk from the first to
-/// the second end point therefore always increases them.
+/// On an axis along which the segment runs backward, coordinates are mirrored: column or row i becomes −1 − i. Coordinates therefore always
+/// increase from the first to the second end point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Line {
     /// Whether the major axis is horizontal.
     pub x_major: bool,
-    /// Whether the line runs to lower columns or rows along its major and its minor axis.
+    /// Whether the line runs to lower columns or rows, along its major axis and along its minor axis.
     pub backward: [bool; 2],
     /// Mirrored position of the first pixel on the major and the minor axis: its column and row, or its row and column.
     pub start: [i32; 2],
@@ -191,18 +194,18 @@ pub struct Line {
     pub depth_step: i64,
 }
 
-/// An end point on one axis, mirrored if the segment runs backward.
+/// One coordinate of an end point, mirrored if the segment runs backward along this axis.
 #[derive(Clone, Copy)]
 struct Coordinate {
     /// Index of the column or row.
     pixel: i32,
-    /// Distance from the border with the smaller coordinate, in 1/256 pixel; minus 1 if the axis is not mirrored. A point on the border with
-    /// the larger coordinate belongs to the column or row; on a mirrored axis, a point on the border with the smaller one.
+    /// Distance from the lower border of the pixel, in 1/256 pixel; less 1 if the axis is not mirrored, because a point on the upper border
+    /// then belongs to the pixel. On a mirrored axis, a point on the lower border does.
     place: i32,
 }
 
 impl Coordinate {
-    /// Splits x − 1, or −x if the coordinate is mirrored, into pixel and position in the pixel.
+    /// Splits x − 1, or −x if the axis is mirrored, into the pixel and the position in the pixel.
     const fn new(x: i32, backward: bool) -> Self {
         let x = if backward { !(x - 1) } else { x - 1 };
         Self {
@@ -211,7 +214,7 @@ impl Coordinate {
         }
     }
 
-    /// Distance to the centre in 1/256 pixel, less 1 on one side of the centre.
+    /// Distance to the centre of the pixel, in 1/256 pixel; less 1 below the centre if the axis is mirrored, otherwise above the centre.
     const fn distance(self) -> i32 {
         if self.place >= 128 {
             self.place - 128
@@ -248,12 +251,12 @@ impl Line {
         if count <= 0 {
             return None;
         }
-        // Distances in 1/256 pixel: from the first end point to the first pixel's centre along the major axis, and from the lower border
-        // of the end point's row or column to the end point along the minor axis.
+        // `ahead` is the distance from the first end point to the first pixel's centre along the major axis. `above` is the distance from
+        // the lower border of the end point's row or column to the end point along the minor axis. Both are in 1/256 pixel.
         let ahead = 256 * passed + 127 - from[0].place + i32::from(backward[0]);
         let above = from[1].place + i32::from(!backward[1]);
         let tie = if x_major { dx < 0 || dy == 0 } else { dx >= 0 };
-        // At most 2^20·(256 + 256), so 32 bits suffice. The quotient by `major` is 0 or 1.
+        // The sum is at most 2^20·(256 + 256), so 32 bits suffice. Divided by `major`, it is 0 or 1.
         let moved = (major * above + minor * ahead - i32::from(tie)) >> 8;
         let up = i32::from(moved >= major);
         let depth_step = if major < 256 {
@@ -273,7 +276,7 @@ impl Line {
         })
     }
 
-    /// The part of the line in a rectangle of the picture: the pixels of the whole line that are in the rectangle.
+    /// The pixels of the line that are in a rectangle of the picture.
     pub fn pixels(mut self, rectangle: &Bounds) -> LinePixels {
         let columns = [rectangle.left, rectangle.right - 1];
         let rows = [rectangle.top, rectangle.bottom - 1];
@@ -310,7 +313,7 @@ impl Line {
         }
     }
 
-    /// Takes `steps` steps at once, if `steps` is above 0. If the line has fewer pixels, none remains.
+    /// Skips the next `steps` pixels, if `steps` is above 0. A line with fewer pixels becomes empty.
     fn skip(&mut self, steps: i64) {
         if steps <= 0 {
             return;
@@ -346,26 +349,26 @@ impl Line {
     }
 }
 
-/// Whether an end point is past the diamond of its pixel along the major axis: in the upper half of the pixel on that axis, and outside of
-/// the diamond. `at` is the end point on the major and the minor axis.
+/// Whether an end point is beyond the diamond of its pixel along the major axis: in the upper half of the pixel on this axis, and outside
+/// of the diamond. `at` has the coordinates of the end point on the major and the minor axis.
 fn passed(v: &ScreenVertex, at: [Coordinate; 2]) -> bool {
     let below = Coordinate::new(v.y, false).place >= 128;
     let distance = at[0].distance() + at[1].distance() + i32::from(below);
     at[0].place >= 128 && distance >= 128
 }
 
-/// The pixels of a line in a rectangle, from the first end point to the second end point.
+/// Iterator over the pixels of a line in a rectangle, from the first to the second end point.
 #[derive(Clone, Debug)]
 pub struct LinePixels {
     /// The remaining line from the next pixel on.
     line: Line,
-    /// Last positions in the rectangle on the major and the minor axis, mirrored like the line.
+    /// Last position in the rectangle on the major axis and on the minor axis, mirrored like the line.
     last: [i32; 2],
 }
 
 impl LinePixels {
-    /// The remaining line from the next pixel on, to its end outside of the rectangle; `None` if there is no further pixel in the
-    /// rectangle.
+    /// The rest of the line from the next pixel to the line's end, which may be outside of the rectangle; `None` if no further pixel is in
+    /// the rectangle.
     pub fn rest(&self) -> Option<&Line> {
         let [major, minor] = self.line.start;
         let is_inside = major <= self.last[0] && minor <= self.last[1];

@@ -1,4 +1,4 @@
-//! A mesh in a field: one scale of depth codes for both (docs/formats/raymarch.md, "A mesh in a field").
+//! A mesh in a field: both use the same scale of depth codes (docs/formats/raymarch.md, "A mesh in a field").
 
 use glint_core::camera::View;
 use glint_core::field::Field;
@@ -36,8 +36,8 @@ pub fn constants(
     Ok((frame, setup))
 }
 
-/// Returns the smaller of two scales of depth codes. Its mantissa is truncated so that its product with `scale` has at most 17 bits, if
-/// clearing 10 low bits suffices for that. With the smaller scale, the depth codes of neither mesh nor field overflow.
+/// Returns the smaller of two scales of depth codes, with which the depth codes of neither mesh nor field overflow. Its mantissa is
+/// truncated so that the product with `scale` has at most 17 bits, if clearing 10 low bits suffices for this.
 fn shared(a: DepthScale, b: DepthScale, scale: Q32_32) -> DepthScale {
     let smaller = if (a.exponent, a.mantissa) < (b.exponent, b.mantissa) {
         a
@@ -51,8 +51,8 @@ fn shared(a: DepthScale, b: DepthScale, scale: Q32_32) -> DepthScale {
     }
 }
 
-/// Number of low bits to clear in a mantissa of 17 bits: the number of bits of the scale's odd factor. It is 7 for 40.5 = 81/2, and 10 for
-/// 45.5625 = 729/16. The product with a longer factor is truncated in any case.
+/// Number of low bits to clear in a mantissa of 17 bits: the number of bits of the scale's odd factor, for example 7 for 40.5 = 81/2 and 10
+/// for 45.5625 = 729/16. A product with a longer odd factor is truncated in any case.
 fn cleared_bits(scale: Q32_32) -> u32 {
     let scale = scale.to_bits().unsigned_abs();
     let odd = scale.checked_shr(scale.trailing_zeros()).unwrap_or(0);

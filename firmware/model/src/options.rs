@@ -11,9 +11,9 @@ use crate::triangle::Clip;
 pub struct MeshOptions {
     /// Whether back faces are culled.
     pub cull: bool,
-    /// Source of the colours.
+    /// Source of the colours: triangles (flat) or vertices (smooth).
     pub shading: Shading,
-    /// Clipping of triangles.
+    /// The volume to which triangles are clipped.
     pub clip: Clip,
     /// The rule that selects the visible side of a triangle.
     pub winding: Winding,

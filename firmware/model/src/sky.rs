@@ -11,17 +11,17 @@ use crate::error::RenderError;
 use crate::frame_buffer::FrameBuffer;
 use crate::raymarch::mixed;
 
-/// Pixels of a group, which have one colour.
+/// Number of pixels in a group. All pixels of a group have one colour.
 const GROUP: usize = 8;
 
-/// Fraction bits of heights.
+/// Number of fraction bits of a height.
 const FRACTION: u32 = 23;
 
 /// The heights and colours of the sky in a frame.
 ///
-/// The height of a place in the picture is the component along z of the direction through it whose component along the camera's forward
-/// axis n is 1; of a fixed gradient, it is 1 at the top and −1 at the bottom of the picture. It is linear in the picture: the height of the group in column x (of groups) and line y is `above` + x·`across` +
-/// (y + 1)·`down`, each s8.23.
+/// The height of a position in the picture is the z component of the ray direction at this position, scaled so that its component along the
+/// camera's forward axis n is 1. For a fixed gradient, the height is 1 at the top and −1 at the bottom of the picture. The height is linear
+/// in the picture: for the group in column x (of groups) and line y it is `above` + x·`across` + (y + 1)·`down`, each s8.23.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sky {
     /// Height of the first group in the line above the picture.
@@ -30,11 +30,11 @@ pub struct Sky {
     pub across: i32,
     /// Change of the height from a line to the next one.
     pub down: i32,
-    /// Colour from the height 1 on, at the zenith.
+    /// Colour at the zenith, from the height 1 up.
     pub zenith: [u8; 3],
-    /// Colour at the height 0, the horizon.
+    /// Colour at the horizon, the height 0.
     pub horizon: [u8; 3],
-    /// Colour to the height −1, at the nadir.
+    /// Colour at the nadir, from the height −1 down.
     pub nadir: [u8; 3],
 }
 
@@ -51,7 +51,7 @@ impl Sky {
         } else {
             Self::heights(view, size)
         };
-        // The middle of the picture is half a step before a group, and half a line above a line.
+        // The middle of the picture is half a group to the left of a group's middle, and half a line above a line's middle.
         let [columns, lines] = [width / 16, height / 2].map(|x| x as i32);
         let first = middle + ((across + down) >> 1) - columns * across - lines * down;
         let [zenith, horizon, nadir] = gradient.colours;
@@ -68,13 +68,13 @@ impl Sky {
     /// The height in the middle of the picture, and its changes from a group to the next one and from a line to the next one, s8.23.
     fn heights(view: &View, size: [u32; 2]) -> [i32; 3] {
         let [u, v, n] = [view.u(), view.v(), view.n()].map(|[_, _, z]| i64::from(z.to_bits()));
-        // An orthographic camera has one direction.
+        // All rays of an orthographic camera have the same direction.
         if view.projection() == Projection::Orthographic {
             return [n as i32, 0, 0];
         }
         let lens = view.lens();
-        // Half a picture has 5·2^k pixels across and 45·2^k down, so a fifth or a 45th of its length in the window is divided by a power of
-        // two; 30 fraction bits. A product has at most 61 bits. A group is eight times as far from the next one as a pixel.
+        // Half a picture has 5·2^k pixels across and 45·2^k down. The step is therefore a fifth or a 45th of half the window's length, with
+        // 30 fraction bits, divided by a power of two. A product has at most 61 bits. A step across is a group of eight pixels.
         let step = |row: i64, (pixels, length): (u32, U8_28), grouped: u32| {
             let k = pixels.trailing_zeros();
             let part = (length.to_bits() << 2) as i64 / i64::from(pixels >> k);
@@ -88,7 +88,7 @@ impl Sky {
         [(n + aside.sum::<i64>()) as i32, across, down]
     }
 
-    /// The sky in a window of a picture with this number of samples: its heights begin at the window's first pixel.
+    /// The sky for a window of a picture with this number of samples per pixel: the group in column 0 and line 0 is the window's first.
     #[must_use]
     pub fn in_window(self, window: Window, samples: Samples) -> Self {
         let [column, line] = window.origin().map(|place| place / samples.across());
@@ -99,7 +99,7 @@ impl Sky {
         }
     }
 
-    /// Height of the group in a column and a line, s8.23; modulo 2^32, as in the gateware, for constants that no camera has.
+    /// Height of the group in a column and a line, s8.23. It wraps modulo 2^32 as in the gateware, which occurs only for invalid constants.
     pub fn height(&self, column: u32, line: u32) -> i32 {
         let right = (column as i32).wrapping_mul(self.across);
         let down = (line as i32 + 1).wrapping_mul(self.down);
@@ -114,8 +114,8 @@ impl Sky {
         mixed(end, self.horizon, 255 - share)
     }
 
-    /// Fills a picture of this number of samples a pixel with the sky, and its depth codes with 0. All samples of a group of pixels have
-    /// the group's colour before it is dithered. Calls `progress` after each line.
+    /// Fills a picture with this number of samples per pixel with the sky, and its depth codes with 0. All samples of a group of pixels
+    /// have the group's colour before dithering. Calls `progress` after each line.
     ///
     /// # Errors
     /// [`RenderError`] for a frame buffer of the wrong size.

@@ -1,4 +1,4 @@
-//! Stereo: the frames of two eyes, and the composition of their pictures (docs/formats/camera.md, "Stereo").
+//! Stereo: the frames of two eyes, and the composition of their pictures into an anaglyph (docs/formats/camera.md, "Stereo").
 //!
 //! For a field without a mesh and rectangles, one frame casts the rays of both eyes. Other frames are drawn as two frames of one eye each.
 
@@ -13,7 +13,7 @@ use glint_core::stereo::Tint;
 use crate::error::RenderError;
 use crate::frame::{Frame, FrameStats, Subject};
 
-/// Number of words in a line of the soft core's data cache. A word holds two pixels.
+/// Number of 32-bit words in a line of the soft core's data cache. A word holds two pixels.
 const LINE: usize = 8;
 /// Number of cache lines that are composed between two calls of `progress` in [`Eyes::compose`].
 const LINES_PER_CALL: usize = 128;
@@ -21,11 +21,11 @@ const LINES_PER_CALL: usize = 128;
 /// The frames of two eyes, whose pictures are composed into one.
 #[derive(Clone, Copy, Debug)]
 pub struct Eyes<'a> {
-    /// The frame of the left eye, which has the depth codes of the picture.
+    /// The frame of the left eye, whose depth codes become those of the composed picture.
     pub left: Frame<'a>,
-    /// The frame of the right eye.
+    /// The frame of the right eye, whose depth codes are not used.
     pub right: Frame<'a>,
-    /// Colours of the glasses.
+    /// Colours of the anaglyph glasses.
     pub tint: Tint,
 }
 
@@ -81,8 +81,8 @@ impl<'a> Frame<'a> {
 }
 
 impl Eyes<'_> {
-    /// Replaces the picture of the left eye by the picture of both eyes, in the colours of the glasses. A word holds two pixels, the left
-    /// pixel in its lower half. Calls `progress` at short intervals.
+    /// Replaces the picture of the left eye by the anaglyph of both eyes. A word holds two pixels, the left pixel in its lower half. Calls
+    /// `progress` at short intervals.
     pub fn compose(&self, left: &mut [u32], right: &[u32], progress: &mut dyn FnMut()) {
         let (left, left_rest) = left.as_chunks_mut::<LINE>();
         let (right, right_rest) = right.as_chunks::<LINE>();
@@ -109,7 +109,7 @@ impl Eyes<'_> {
         }
     }
 
-    /// Composes two pixels of each eye; `last` caches the previous words and their result.
+    /// As [`composed`](Self::composed); `last` caches the previous words and their result.
     #[inline(always)]
     fn remembered(&self, last: &mut ([u32; 2], u32), words: [u32; 2]) -> u32 {
         if last.0 != words {
@@ -118,7 +118,7 @@ impl Eyes<'_> {
         last.1
     }
 
-    /// Composes two pixels of each eye.
+    /// Composes two pixels of each eye to two pixels of the anaglyph.
     fn composed(&self, [left, right]: [u32; 2]) -> u32 {
         let [a, b] = pixels(left).map(luminance);
         let [c, d] = pixels(right).map(luminance);
@@ -127,7 +127,7 @@ impl Eyes<'_> {
     }
 }
 
-/// The two pixels of a word.
+/// The two pixels in a word, the left one first.
 const fn pixels(word: u32) -> [u16; 2] {
     [word as u16, (word >> 16) as u16]
 }
@@ -154,7 +154,7 @@ const fn shares(shift: u32, rounding: u16) -> [u16; 256] {
     shares
 }
 
-/// The sum of the counts of both eyes, or of the parts of a frame.
+/// Adds the counts of both eyes, or of the quarters of a frame.
 impl Add for FrameStats {
     type Output = Self;
 

@@ -15,17 +15,17 @@ pub const LINE_COLOUR: Rgb565 = Rgb565(0x07E0);
 /// Number of segments that are drawn between two calls of `progress`.
 const SEGMENTS_PER_CALL: u32 = 16;
 
-/// A program and the motion of its segments.
+/// A program of the wireframe simulator, and the motion of its segments.
 #[derive(Clone, Copy, Debug)]
 pub struct WireframeSubject<'a> {
-    /// The program.
+    /// The program, a list of segments and their viewing parameters.
     pub program: Program<'a>,
-    /// The motion of all segments.
+    /// The motion that transforms all segments.
     pub pose: Pose,
 }
 
 impl WireframeSubject<'_> {
-    /// The line of a segment of the program, drawn without a depth test; `None` if no part of it is on the screen.
+    /// The line of a segment of the program, drawn without a depth test; `None` if no part of the line is on the screen.
     pub fn line(&self, projection: &Projection, segment: Segment) -> Option<line::Segment> {
         let ends = projection.line(self.pose.segment(segment))?;
         Some(line::Segment {
@@ -36,14 +36,14 @@ impl WireframeSubject<'_> {
     }
 }
 
-/// Counts of a wireframe's picture.
+/// Counts of the segments and pixels of a drawn wireframe.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct WireframeStats {
     /// Number of segments of the program.
     pub segments: u32,
     /// Number of segments with a part beyond the view plane and within the guard band.
     pub lines: u32,
-    /// Pixels written, or samples of averaged pixels; one of several lines counts once per line.
+    /// Number of pixels written, or of samples with several samples per pixel. A pixel on several lines counts once per line.
     pub pixels: u64,
 }
 
@@ -56,8 +56,8 @@ impl WireframeStats {
     }
 }
 
-/// Clears the window of a picture with this number of samples to `clear` and draws a program into it. Pixels of lines have the largest depth code, all other pixels code 0. Calls
-/// `progress` at short intervals.
+/// Clears the window of a picture with this number of samples per pixel to `clear`, and draws a program into the window. Pixels of lines
+/// get the largest depth code, all other pixels the code 0. Calls `progress` at short intervals.
 ///
 /// # Errors
 /// [`RenderError`] for a buffer of the wrong size.

@@ -13,10 +13,10 @@ const TRIANGLES_PER_CALL: usize = 64;
 
 /// Placeholder for the number of an edge of length 0.
 const NONE: u32 = u32::MAX;
-/// Flag in the number of an edge: set in the first triangle that has the edge. The edge is drawn with this triangle.
+/// Flag in the number of an edge, set only in the first triangle with this edge. `segments` emits the edge at this triangle.
 const FIRST: u32 = 1 << 31;
 
-/// The numbers of a triangle's edges, each from a corner to the next corner.
+/// The numbers of a triangle's three edges; edge i goes from corner i to the next corner.
 type Sides = [u32; 3];
 
 /// The edges of a mesh without duplicates: edges between equal pairs of positions count as one edge, even with different vertices.
@@ -48,13 +48,13 @@ impl<'m> EdgeList<'m> {
         3 * triangles + Table::words(3 * triangles)
     }
 
-    /// Empties the list. Required after writes to the memory of its mesh: otherwise a list is only made again for a mesh with another
-    /// address or length.
+    /// Empties the list. Call this after writes to the memory of the listed mesh: the list detects another mesh only by its address and
+    /// length.
     pub const fn clear(&mut self) {
         self.mesh = None;
     }
 
-    /// Makes the list of a mesh, unless the list of this mesh exists.
+    /// Makes the list of a mesh, unless the memory already holds the list of this mesh.
     ///
     /// Not inlined, because most frames do not run it.
     ///
@@ -97,8 +97,8 @@ impl<'m> EdgeList<'m> {
         Ok(())
     }
 
-    /// Calls `emit` with the segment of each edge that has a part in the view volume of the frame, in the order of the triangles.
-    /// With `cull`, back faces add no bias. `scratch` must hold the vertices of the largest chunk. Calls `progress` at short intervals.
+    /// Calls `emit` with the segment of each edge that has a part in the view volume of the frame, in the order of the triangles. With
+    /// `cull`, back faces cause no bias. `scratch` must hold the vertices of the largest chunk. Calls `progress` at short intervals.
     ///
     /// # Errors
     /// [`RenderError::Edges`] or [`RenderError::Scratch`]; no segment was then emitted.
@@ -160,8 +160,8 @@ impl<'m> EdgeList<'m> {
     }
 }
 
-/// Calls `visit` with the corners of each triangle of a mesh and its `sides`. With `projects`, the vertices of each chunk are projected
-/// into `scratch` first; otherwise `scratch` already holds them.
+/// Calls `visit` with the corners and the `sides` of each triangle of a mesh. With `projects`, first projects the vertices of each chunk
+/// into `scratch`; otherwise `scratch` must already hold the projected vertices.
 ///
 /// Not inlined, so that memory.x can place it beside its callees, and both stay in the instruction cache.
 #[inline(never)]
@@ -197,7 +197,7 @@ fn split(memory: &mut [u32], triangles: u32) -> Option<(&mut [Sides], &mut [u32]
     Some((sides.as_chunks_mut().0, rest))
 }
 
-/// The results of `of` for the vertex indices of a triangle; `None` for an invalid index, which a checked mesh does not have.
+/// The results of `of` for the three vertex indices of a triangle; `None` for an invalid index, which a checked mesh does not contain.
 fn corners<T>(triangle: &Triangle, of: impl Fn(usize) -> Option<T>) -> Option<[T; 3]> {
     let [Some(a), Some(b), Some(c)] = triangle.indices.map(|i| of(usize::from(i))) else {
         return None;

@@ -3,12 +3,13 @@
 /// Number of words of an edge's key.
 pub const KEY_WORDS: usize = 3;
 
-/// Content of a slot without an edge.
+/// Content of an empty slot.
 const EMPTY: u32 = u32::MAX;
 
 /// A set of edges, which are numbered in the order of their insertion.
 pub struct Table<'m> {
-    /// Hash slots with edge numbers, with linear probing: each at the index of the edge's hash or after it. Their number is a power of two.
+    /// Hash slots with edge numbers, with linear probing: an edge is in the first free slot from the index of its hash on. The number of
+    /// slots is a power of two.
     slots: &'m mut [u32],
     /// The keys of the edges, by edge number.
     keys: &'m mut [[u32; KEY_WORDS]],
@@ -27,7 +28,7 @@ impl<'m> Table<'m> {
         4 * Self::slots(most)
     }
 
-    /// An empty table in `memory` for up to `most` edges, or for fewer edges if `memory` is smaller; `None` if no edge fits.
+    /// An empty table in `memory` for up to `most` edges, or for fewer if `memory` is too small for `most`; `None` if no edge fits.
     pub fn new(memory: &'m mut [u32], most: usize) -> Option<Self> {
         let room = 1 << (memory.len() / 4).checked_ilog2()?;
         let (slots, keys) = memory.split_at_mut_checked(Self::slots(most).min(room))?;
@@ -46,7 +47,7 @@ impl<'m> Table<'m> {
 
     /// Finds an edge, or inserts it. Returns its number, and whether it was inserted; `None` if the table is full.
     pub fn insert(&mut self, key: [u32; KEY_WORDS]) -> Option<(u32, bool)> {
-        // The hash of FxHasher: the multiplier is 2^32 divided by the golden ratio, and its upper bits are mixed best.
+        // The hash of FxHasher: the multiplier is 2^32 divided by the golden ratio. The upper bits of the hash are mixed best.
         let hash = key.iter().fold(0u32, |hash, &word| {
             (hash.rotate_left(5) ^ word).wrapping_mul(0x9E37_79B9)
         });
@@ -55,7 +56,7 @@ impl<'m> Table<'m> {
         loop {
             let slot = self.slots.get_mut(at)?;
             if *slot == EMPTY {
-                // One slot always stays empty, so that each search ends.
+                // One slot always remains empty, so that every search ends.
                 let place = self.keys.get_mut(self.count);
                 *place.filter(|_| self.count < mask)? = key;
                 let number = self.count as u32;

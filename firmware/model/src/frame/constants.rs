@@ -14,13 +14,13 @@ use crate::sky::Sky;
 use crate::triangle::mesh_setup::Scale;
 use crate::triangle::{MeshLight, MeshSetup};
 
-/// Numbers of a frame that do not depend on the pixel or triangle, computed once before drawing.
+/// Values of a frame that do not depend on the pixel or triangle, computed once before drawing.
 ///
-/// The constants take about 3,700 bytes, most of them for the rays of a field and for its palette. To save time, keep one
-/// `FrameConstants` and [update](Self::update) it for each frame instead of moving new ones.
+/// The constants take about 3,700 bytes, mostly for the rays and the palette of a field. To save the time of a copy, keep one
+/// `FrameConstants` and [update](Self::update) it for each frame.
 #[derive(Clone, Debug, Default)]
 pub struct FrameConstants {
-    /// Constants of the mesh, or the constants that all objects share.
+    /// Constants of a single mesh, or the constants that all objects share.
     mesh: Option<MeshSetup>,
     scale: Scale,
     light: Option<MeshLight>,
@@ -147,10 +147,10 @@ impl FrameConstants {
         }
     }
 
-    /// Replaces the constants by the constants of `frame`. Objects are not checked until their constants are computed.
+    /// Replaces the constants by those of `frame`. Does not check objects; [`mesh_setup`](Self::mesh_setup) checks each object.
     ///
     /// # Errors
-    /// A [`RenderError`] for a frame that cannot be drawn; there are then no constants. [`RenderError::Stereo`] for a frame that must be
+    /// A [`RenderError`] for a frame that cannot be drawn; `self` then holds no constants. [`RenderError::Stereo`] for a frame that must be
     /// drawn as two frames ([`Frame::eyes`]).
     pub fn update(&mut self, frame: &Frame) -> Result<(), RenderError> {
         let result = self.compute(frame);
@@ -234,7 +234,7 @@ impl FrameConstants {
     }
 }
 
-/// The smallest and the largest depth of objects, with 37 fraction bits; `None` without objects.
+/// The smallest and the largest depth of all objects, with 37 fraction bits; `None` without objects.
 #[inline(never)]
 fn depths(objects: &[Object], camera: &MeshSetup) -> Option<[i64; 2]> {
     let depths = objects.iter().map(|object| {

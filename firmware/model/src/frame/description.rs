@@ -22,13 +22,13 @@ use crate::wireframe::WireframeSubject;
 /// The description of one picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<'a> {
-    /// Mesh, edges of a mesh, field, mesh and field, several meshes, or a wireframe.
+    /// What the picture shows, for example a mesh or a field.
     pub subject: Subject<'a>,
-    /// Camera. A wireframe has its own eye and view plane.
+    /// Camera. Not used for a wireframe, whose program contains its eye and view plane.
     pub view: View,
-    /// Size of the picture.
+    /// Width and height of the picture.
     pub size: Size,
-    /// Number of samples whose average is a pixel.
+    /// Number of samples that are averaged to a pixel.
     pub samples: Samples,
     /// The quarter to draw, if the frame [is divided](Self::is_divided).
     pub quarter: Quarter,
@@ -51,16 +51,17 @@ pub struct Frame<'a> {
     pub rectangles: &'a [Rectangle<'a>],
 }
 
-/// The subject of a frame.
+/// What the picture of a frame shows.
 #[derive(Clone, Copy, Debug)]
 pub enum Subject<'a> {
-    /// A mesh.
+    /// One mesh, in world coordinates.
     Mesh(MeshSubject<'a>),
-    /// The edges of a mesh: [`Frame::draw`] draws only the faces, and [`Frame::draw_edges`] the edges. Made by [`Subject::edges`].
+    /// The edges of a mesh: [`Frame::draw`] draws only the faces, and [`Frame::draw_edges`] draws the edges. Create this subject with
+    /// [`Subject::edges`].
     Edges(MeshSubject<'a>, Edges),
     /// A distance field.
     Field(FieldSubject<'a>),
-    /// A mesh in a distance field.
+    /// A mesh and a distance field that hide each other by depth.
     MeshInField(MeshSubject<'a>, FieldSubject<'a>),
     /// Several meshes, each with its own model matrix. At equal depths the later object covers the earlier one.
     Objects(&'a [Object<'a>]),
@@ -75,22 +76,22 @@ pub enum Subject<'a> {
 pub struct Object<'a> {
     /// Colour that replaces the colours of the mesh.
     pub colour: Option<Rgb565>,
-    /// The mesh and its options.
+    /// The mesh and its drawing options.
     pub subject: MeshSubject<'a>,
     /// Position and orientation: a model matrix.
     pub placement: Placement,
 }
 
-/// A mesh and its options.
+/// A mesh and its drawing options.
 #[derive(Clone, Copy, Debug)]
 pub struct MeshSubject<'a> {
-    /// The mesh.
+    /// The mesh to draw.
     pub mesh: Mesh<'a>,
     /// Whether back faces are culled.
     pub cull: bool,
     /// Source of the colours: triangles (flat) or vertices (smooth).
     pub shading: Shading,
-    /// Clipping of triangles.
+    /// The volume to which triangles are clipped.
     pub clip: Clip,
     /// The rule that selects the visible side of a triangle.
     pub winding: Winding,
@@ -98,10 +99,10 @@ pub struct MeshSubject<'a> {
     pub textures: bool,
 }
 
-/// A distance field and its options.
+/// A distance field and its drawing options.
 #[derive(Clone, Copy, Debug)]
 pub struct FieldSubject<'a> {
-    /// The field.
+    /// The field to draw.
     pub field: &'a Field,
     /// Material, lights, background, fog and occlusion.
     pub appearance: &'a Appearance,
@@ -204,7 +205,7 @@ impl<'a> Subject<'a> {
         mesh.into_iter().chain(objects)
     }
 
-    /// The mesh with this number, and the colour that replaces its own colours; `None` after the last mesh.
+    /// The mesh with this number, and the colour that replaces the colours of the mesh; `None` after the last mesh.
     #[inline(always)]
     pub fn coloured_mesh(&self, number: usize) -> Option<(&MeshSubject<'a>, Option<Rgb565>)> {
         match self {
@@ -221,7 +222,7 @@ impl<'a> Subject<'a> {
         }
     }
 
-    /// The mesh of a subject without objects, and the colour that replaces its own colours.
+    /// The mesh of a subject without objects, and the colour that replaces the colours of the mesh.
     // Not inlined, so that `coloured_mesh`, which the firmware calls for each object of a frame, is short and has no jump table.
     #[inline(never)]
     fn coloured_part(&self) -> Option<(&MeshSubject<'a>, Option<Rgb565>)> {
@@ -269,14 +270,13 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// Whether a quarter of the frame is drawn at a time, because the picture of its samples is larger than the largest size.
+    /// Whether the frame is drawn one quarter at a time, because its samples form a picture that is larger than the largest size.
     #[inline(always)]
     pub const fn is_divided(&self) -> bool {
         self.window().quarter.is_some()
     }
 
-    /// The part of the picture of the frame's samples that is drawn: the whole picture, or the quarter of a
-    /// [divided](Self::is_divided) frame.
+    /// The samples to draw: those of the whole picture, or of the quarter `quarter` if the frame [is divided](Self::is_divided).
     #[inline(always)]
     pub const fn window(&self) -> Window {
         match (self.drawn_samples(), self.size.doubled()) {
@@ -289,7 +289,7 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// The number of samples of a pixel: one, if this build draws no more.
+    /// The number of samples per pixel that are drawn: always one in a build without antialiasing.
     #[inline(always)]
     pub const fn drawn_samples(&self) -> Samples {
         if ANTIALIASING.is_built {
@@ -299,7 +299,7 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// The frames to draw one after the other for this frame: one for each quarter, or only this frame.
+    /// The frames into which this frame is divided, to be drawn in this order: one for each quarter, or only this frame.
     pub fn parts(&self) -> impl Iterator<Item = Self> {
         let count = if self.is_divided() {
             Quarter::ALL.len()
@@ -310,8 +310,8 @@ impl<'a> Frame<'a> {
         quarters.map(|quarter| Self { quarter, ..*self })
     }
 
-    /// The rectangles, if this build draws textures.
-    // Inlined, as other conditions on rectangles, so that other builds have no code for them.
+    /// The rectangles to draw: none in a build without textures.
+    // Inlined, like all conditions on rectangles, so that builds without textures contain no code for rectangles.
     #[inline(always)]
     pub const fn drawn_rectangles(&self) -> &'a [Rectangle<'a>] {
         if TEXTURE.is_built {
@@ -321,8 +321,8 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// A frame with one eye, and with the mesh lights and the background of `appearance`, or else with this background. Wireframes and
-    /// hidden edges have a black background.
+    /// A frame with one eye, and with the mesh lights and the background of `appearance`. If `appearance` has no background, `default` is
+    /// used. Wireframes and hidden edges have a black background.
     pub fn in_appearance(
         subject: Subject<'a>,
         view: View,
@@ -352,7 +352,7 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// The mesh with this number, and its drawing options under the light [`FrameConstants::light`](super::FrameConstants::light); `None`
+    /// The mesh with this number, and its drawing options with the light [`FrameConstants::light`](super::FrameConstants::light); `None`
     /// after the last mesh. The option `clear` has no effect.
     pub fn numbered_mesh<'s>(
         &'s self,
@@ -376,8 +376,8 @@ impl<'a> Frame<'a> {
         Some((subject, options))
     }
 
-    /// The density of the fog on the meshes, and its colour, that of the background at the horizon: the frame's or, for a mesh in a field,
-    /// those of the field's appearance.
+    /// The density and the colour of the fog on the meshes. The colour is that of the background at the horizon. Both are the frame's or,
+    /// for a mesh in a field, those of the field's appearance.
     pub fn mesh_fog(&self) -> (U4_28, Rgb) {
         match &self.subject {
             Subject::MeshInField(_, field) if MESH_IN_FIELD.is_built => {

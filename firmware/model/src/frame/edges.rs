@@ -10,8 +10,8 @@ use crate::line::Segment;
 use crate::triangle::Projected;
 
 impl Frame<'_> {
-    /// Draws the edges of the mesh of [`Subject::Edges`] over the faces drawn by [`draw`](Self::draw), and then the rectangles, and adds their
-    /// counts to the counts of the faces. Other subjects have no edges. Calls `progress` at short intervals.
+    /// Draws the edges of the mesh of [`Subject::Edges`] over the faces drawn by [`draw`](Self::draw), and then the rectangles. Adds the
+    /// counts of both to the counts of the faces. Does nothing for other subjects. Calls `progress` at short intervals.
     ///
     /// # Errors
     /// [`RenderError`] for a buffer or memory of the wrong size.

@@ -7,7 +7,7 @@ use crate::triangle::raster::draw_textured;
 use crate::triangle::rectangle::set_up;
 
 impl Frame<'_> {
-    /// Draws the rectangles over the picture in `buffer`, and adds their pixels to the counts of the mesh or wireframe, if there is one.
+    /// Draws the rectangles over the picture in `buffer`. Adds their pixels to the counts of the mesh or wireframe, if the frame has one.
     /// Calls `progress` before each rectangle.
     pub(super) fn draw_rectangles(
         &self,

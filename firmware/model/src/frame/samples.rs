@@ -1,4 +1,4 @@
-//! Averages of samples: the pixels of a frame with four samples a pixel (docs/formats/triangle.md, "Samples").
+//! Averaging of samples to the pixels of a frame with four samples per pixel (docs/formats/triangle.md, "Samples").
 
 use glint_core::colour::{Rgb565, Rounding};
 use glint_core::picture::Samples;
@@ -6,8 +6,8 @@ use glint_core::picture::Samples;
 use super::description::Frame;
 
 impl Frame<'_> {
-    /// Stores the pixels of the frame's [window](Self::window) in `picture`, whose size is the frame's: the averages of `samples`, or these
-    /// samples themselves. Calls `progress` after each line.
+    /// Stores the pixels of the frame's [window](Self::window) in `picture`, which has the frame's size. The pixels are the averages of
+    /// `samples` or, with one sample per pixel, a copy of `samples`. Calls `progress` after each line.
     pub fn average(&self, samples: &[u16], picture: &mut [u16], progress: &mut dyn FnMut()) {
         let window = self.window();
         let columns = window.size.width() as usize;
@@ -30,7 +30,7 @@ impl Frame<'_> {
     }
 }
 
-/// Stores the averages of two lines of samples in the `pixels` of line y.
+/// Averages two lines of samples to the `pixels` of line y.
 pub fn average_lines([upper, lower]: [&[u16]; 2], y: u32, rounding: Rounding, pixels: &mut [u16]) {
     let [upper, lower] = [upper, lower].map(|line| line.as_chunks::<2>().0);
     let quads = upper.iter().zip(lower);
@@ -39,9 +39,9 @@ pub fn average_lines([upper, lower]: [&[u16]; 2], y: u32, rounding: Rounding, pi
     }
 }
 
-/// What is added to the sums of four channels in the pixel in column x and line y, before they are divided by four and rounded down: 0 to
-/// 3. Each 2×2 pixels have all thresholds, and so do those of four neighbours whose columns and lines have an even sum: the samples were
-/// dithered by thresholds that depend on this sum ([`Rounding::threshold`]).
+/// The number from 0 to 3 that is added to the sum of four samples of a channel, in the pixel in column x and line y, before the sum is
+/// divided by four and rounded down. Each block of 2×2 pixels contains all four thresholds. So do four neighbouring pixels with an even sum
+/// of column and line, because the dithering of the samples depends on this sum ([`Rounding::threshold`]).
 fn threshold(rounding: Rounding, x: u32, y: u32) -> u8 {
     const THRESHOLDS: [[u8; 4]; 2] = [[0, 2, 3, 1], [3, 1, 0, 2]];
     match rounding {
@@ -50,7 +50,7 @@ fn threshold(rounding: Rounding, x: u32, y: u32) -> u8 {
     }
 }
 
-/// The average of four samples in RGB565, whose sums of channels are rounded by a threshold.
+/// The average of four samples in RGB565. The threshold is added to the sum of each channel before the division.
 fn average(samples: [u16; 4], threshold: u8) -> u16 {
     let channels = samples.map(|sample| Rgb565(sample).channels());
     let [red, green, blue] = [0, 1, 2].map(|i: usize| {

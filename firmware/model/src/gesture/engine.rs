@@ -1,4 +1,4 @@
-//! The complete engine: from the states of the sensor's pins to frames.
+//! The complete engine: converts the states of the sensor's pins to the statistics of frames.
 
 use glint_core::colour::Rgb565;
 
@@ -10,26 +10,26 @@ const MOST: u16 = 2047;
 /// Polarities of the sensor's pins, and byte order of its pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Polarity {
-    /// VSYNC is low between frames.
+    /// Whether VSYNC is low between frames.
     pub vsync_low: bool,
-    /// HREF is low during a line.
+    /// Whether HREF is low during a line.
     pub href_low: bool,
-    /// The first byte of a pixel is the low byte.
+    /// Whether the first byte of a pixel is the low byte.
     pub swap: bool,
 }
 
-/// The state of the pins at an edge of the sensor's clock.
+/// The state of the pins at an edge of the sensor's pixel clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Pins {
-    /// VSYNC.
+    /// Level of the pin VSYNC.
     pub vsync: bool,
-    /// HREF.
+    /// Level of the pin HREF.
     pub href: bool,
-    /// D7 to D0.
+    /// Levels of the pins D7 to D0.
     pub data: u8,
 }
 
-/// Fault of a frame, with its register value.
+/// Fault of a frame; the discriminant is the register value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     /// A line was too short or too long.
@@ -42,7 +42,7 @@ pub enum Fault {
     Cut,
     /// Pixels came faster than the engine can process them. This never happens in the model.
     Lost,
-    /// The sensor's clock stopped.
+    /// The sensor's pixel clock stopped.
     Stopped,
 }
 
@@ -57,16 +57,16 @@ pub struct Counts {
     pub lines_malformed: u32,
 }
 
-/// Measured output of the image sensor.
+/// Measured size of the image sensor's output.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Seen {
-    /// Number of pixels of the last line.
+    /// Number of pixels in the last line.
     pub pixels: u16,
-    /// Number of lines of the last frame.
+    /// Number of lines in the last frame.
     pub lines: u16,
 }
 
-/// The engine, from the pins to the results.
+/// The engine, with its inputs, its state and its results.
 #[derive(Clone, Debug)]
 pub struct Engine {
     /// The settings for the next frame.
@@ -77,9 +77,9 @@ pub struct Engine {
     pub counts: Counts,
     /// First fault of the last frame.
     pub fault: Option<Fault>,
-    /// Measured output of the image sensor.
+    /// Measured size of the image sensor's output.
     pub seen: Seen,
-    /// Polarities of the pins. They may only change while the engine is off.
+    /// Polarities of the pins. Change them only while the engine is off.
     pub polarity: Polarity,
     is_enabled: bool,
     snapshot: Snapshot,
@@ -88,7 +88,7 @@ pub struct Engine {
     is_keeping: bool,
     in_force: Settings,
     sums: Sums,
-    /// Whether a frame has begun since the start, or since the clock stopped.
+    /// Whether a frame has begun since the start, or since the pixel clock last stopped.
     is_active: bool,
     found: Option<Fault>,
     marks: [bool; MOST as usize],
@@ -100,7 +100,7 @@ pub struct Engine {
 }
 
 impl Engine {
-    /// Makes an enabled engine before its first frame; `pins` is the current state of the pins.
+    /// Creates an enabled engine that waits for its first frame; `pins` is the current state of the pins.
     pub fn new(polarity: Polarity, settings: Settings, pins: Pins) -> Self {
         let was_between = pins.vsync != polarity.vsync_low;
         Self {
@@ -181,7 +181,7 @@ impl Engine {
         self.is_keeping = false;
     }
 
-    /// The requested small picture, once it is complete.
+    /// The requested small picture; `None` until the picture is complete.
     pub fn snapshot(&self) -> Option<&Snapshot> {
         self.is_snapshot_ready.then_some(&self.snapshot)
     }

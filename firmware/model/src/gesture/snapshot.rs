@@ -1,8 +1,8 @@
-//! The small picture of a camera frame.
+//! A small picture of a frame of the image sensor.
 
 use glint_core::colour::Rgb565;
 
-/// Number of words in the memory of a small picture.
+/// Number of words in the engine's memory for a small picture.
 pub const SNAPSHOT_WORDS: usize = 2048;
 
 /// A small picture: every 2^step-th pixel of every 2^step-th line, as marks or colours.
@@ -34,12 +34,12 @@ impl Snapshot {
         &self.words
     }
 
-    /// The number of the frame that it shows; whole frames are counted from 1.
+    /// The number of the frame that the picture shows; whole frames are counted from 1.
     pub const fn frame(&self) -> u32 {
         self.frame
     }
 
-    /// Empties the picture.
+    /// Removes all pixels from the picture.
     pub(super) fn clear(&mut self) {
         *self = Self::new(self.step, self.is_colour);
     }

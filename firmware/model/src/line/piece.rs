@@ -1,4 +1,4 @@
-//! Pieces: the parts of a line in the bands of a picture, one for each band in which the line has a pixel.
+//! Pieces: a line is cut at the borders of the picture's bands, into one piece for each band in which the line has a pixel.
 
 use glint_core::colour::Rgb565;
 use glint_core::picture::Size;
@@ -11,9 +11,9 @@ use crate::triangle::setup::Bounds;
 /// The part of a line in one band of a picture, given by its first pixel there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Piece {
-    /// The line from the first pixel in the band on, to its end outside of the band. Its depths include the bias.
+    /// The rest of the line from the first pixel in the band to the line's end, which may be outside of the band. Depths include the bias.
     pub line: Line,
-    /// The colour of its pixels.
+    /// Colour of all pixels of the piece.
     pub colour: Rgb565,
 }
 
@@ -47,7 +47,7 @@ impl Segment {
 }
 
 impl Piece {
-    /// Column and row of the first pixel.
+    /// Column and row of the piece's first pixel.
     pub fn first(&self) -> [i32; 2] {
         let pixel = self.line.pixel();
         [pixel.column, pixel.row]
@@ -64,7 +64,7 @@ impl Piece {
         let mut drawn = 0;
         let pixels = LinePixels {
             line: self.line,
-            // No limit: the test of each pixel's position ends the piece at the end of the band.
+            // The number of pixels is not limited here: the iterator stops at the end of the band.
             last: [i32::MAX; 2],
         };
         let is_inside = |column, row| {
