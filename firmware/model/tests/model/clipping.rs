@@ -1,5 +1,5 @@
-//! Tests of the clipping of triangles that cross the near plane or leave the guard band: the remaining vertices, and equal results for each
-//! first vertex. `glint-reference` compares the pixels of clipped triangles with exact results.
+//! Tests of the clipping of triangles that cross the near plane or leave the guard band: the remaining vertices, and the same result for
+//! each choice of the first vertex. `glint-reference` compares the pixels of clipped triangles with exact results.
 
 use glint_model::triangle::clip::clip;
 use glint_model::triangle::vertex::project;
@@ -8,7 +8,7 @@ use glint_vectors::{Camera, Model, Picture, Random};
 
 use crate::{random_frame, random_vertex};
 
-/// Vertices inside the view volume are kept bit for bit, vertices outside are removed.
+/// Clipping keeps vertices inside the volume bit for bit, and removes vertices outside of the volume.
 #[test]
 fn what_is_inside_is_never_cut() {
     let mut random = Random(10);

@@ -1,4 +1,4 @@
-//! Depth codes of triangles that are given in screen coordinates.
+//! Tests of the depth codes of triangles with random screen coordinates.
 
 use glint_core::colour::Rgb565;
 use glint_model::triangle::raster::draw;
@@ -44,7 +44,7 @@ fn depth_error(vertices: [ScreenVertex; 3], size: (u32, u32)) -> f64 {
         let accumulator = (v0[2] << 8) + ((gx * dx + gy * dy) >> 8);
         let as_written = ((accumulator + (1 << 13)) >> 14).rem_euclid(1 << 18).max(1);
         assert_eq!(i128::from(code), as_written, "{vertices:?} at {i}, {j}");
-        // The exact depth minus the stored depth, in codes, times 64 and times the doubled area of the triangle.
+        // The exact depth minus the stored depth, in codes, multiplied by 64 and by the doubled area of the triangle.
         let exact = (v0[2] - 64 * i128::from(code)) * area
             + (p1[2] * p2[1] - p2[2] * p1[1]) * dx
             + (p2[2] * p1[0] - p1[2] * p2[0]) * dy;
@@ -62,7 +62,7 @@ fn depth_error(vertices: [ScreenVertex; 3], size: (u32, u32)) -> f64 {
 #[test]
 fn depth_against_the_exact_plane() {
     let mut random = Random(6);
-    // Sets random depths of the vertices, from the whole range of a frame, up to 2^18 − 4 codes.
+    // Sets random depths of the vertices from the whole range of a frame, which ends at 2^18 − 4 codes.
     let mut steep = |mut triangle: [ScreenVertex; 3]| {
         for vertex in &mut triangle {
             vertex.w = match random.integer(0, 3) {
@@ -78,7 +78,7 @@ fn depth_against_the_exact_plane() {
     for _ in 0..4000 {
         worst = worst.max(depth_error(steep(random_triangle(&mut shapes)), SIZE));
     }
-    // Makes slivers with an aspect ratio of 1000:1 and more, in all directions.
+    // Slivers in all directions, with an aspect ratio of 1000:1 or more.
     let mut slivers: f64 = 0.0;
     for size in [SIZES[0], SIZES[2]] {
         for _ in 0..if size == SIZES[0] { 3000 } else { 150 } {
@@ -100,7 +100,7 @@ fn depth_against_the_exact_plane() {
         }
     }
     println!(
-        "depth off the exact plane by at most {worst:.4} codes, {slivers:.4} on slivers (half a code is the rounding)"
+        "depth error: at most {worst:.4} codes, on slivers {slivers:.4} (the rounding is half a code)"
     );
     assert!(worst.max(slivers) <= 0.5 + 0.26);
 }

@@ -1,4 +1,5 @@
-//! Pictures from descriptors in memory, drawn band by band as the raster pass does, equal the pictures of the triangles and lines.
+//! Tests that pictures drawn from descriptors in memory, band by band as the raster pass does, equal the pictures of the original triangles
+//! and lines.
 
 use glint_core::colour::{Rgb565, Shading};
 use glint_core::picture::Size;
@@ -15,7 +16,7 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::mesh_of;
 
-/// Draws the contents of descriptors into all bands of a picture, and returns the numbers of covered and drawn pixels.
+/// Draws the triangles and pieces in these descriptors into all bands of a picture. Returns the numbers of covered and drawn pixels.
 fn in_bands(descriptors: &[Vec<u32>], size: Size, target: &mut FrameBuffer) -> [u32; 2] {
     let mut counts = [0; 2];
     for band in 0..size.bands() {
@@ -161,7 +162,7 @@ fn random_descriptors_stay_in_their_band() {
         let mut words: [u32; 24] = random.random();
         let mut groups: [u8; 3] = std::array::from_fn(|_| random.random_range(0..40));
         if number % 3 > 0 {
-            // Columns in the picture, or the bit pattern that marks a piece.
+            // The columns of a triangle in the picture, or the bit pattern that marks a piece.
             match number % 3 {
                 1 => groups.sort_unstable(),
                 _ => groups[1] = 0xC0,

@@ -1,4 +1,5 @@
-//! Tests of the rounding of colours to RGB565: dithering keeps the mean of slow changes, and colours that RGB565 has.
+//! Tests of the rounding of colours to RGB565: dithering preserves the mean of slow changes, and does not change colours that RGB565 can
+//! represent.
 
 use glint_core::appearance::Appearance;
 use glint_core::colour::{Rgb565, Rounding, Shading};
@@ -18,11 +19,11 @@ use glint_vectors::{Camera, Picture, Random};
 
 use crate::cube;
 
-/// Steps of each channel, and its change by a step as the monitor shows it, in 255ths.
+/// Number of steps of each channel; a step is 255/`STEPS` on the monitor.
 const STEPS: [f64; 3] = [31.0, 63.0, 31.0];
 
-/// The largest error of the mean of 8×8 pixels, in 255ths: of each channel in steps, against the exact steps, in the blocks whose pixels
-/// all have exact steps.
+/// The largest error of the mean of a channel in a block of 8×8 pixels, in 255ths. `exact` has the exact channels of each pixel in steps;
+/// blocks with a `None` are skipped.
 fn worst_mean(picture: &Picture, exact: &[Option<[f64; 3]>]) -> f64 {
     let width = picture.width as usize;
     let blocks = (0..picture.height as usize / 8).flat_map(|y| (0..width / 8).map(move |x| (x, y)));
@@ -51,7 +52,8 @@ fn worst_mean(picture: &Picture, exact: &[Option<[f64; 3]>]) -> f64 {
     worst
 }
 
-/// The pictures of a triangle over the whole picture with the light of its corners, with both roundings; and the exact steps of each pixel.
+/// Draws a triangle that covers the whole picture, with this light at the corners, with both roundings. Also returns the exact channels of
+/// each pixel in steps.
 fn ramp(lit: [Lit; 3], depths: [u32; 3]) -> ([Picture; 2], Vec<Option<[f64; 3]>>) {
     let mut vertices =
         [[-40, -30], [700, -30], [-40, 400]].map(|place: [i64; 2]| at(place.map(|x| 256 * x)));
@@ -59,7 +61,7 @@ fn ramp(lit: [Lit; 3], depths: [u32; 3]) -> ([Picture; 2], Vec<Option<[f64; 3]>>
         vertex.w = depth;
     }
     let (triangle, Setup { bounds, .. }) = set_up(vertices, SIZE).unwrap();
-    // The light of a vertex, in the order of the triangle.
+    // The index of each vertex before the triangle was oriented.
     let order = triangle
         .vertices
         .map(|vertex| vertices.iter().position(|other| *other == vertex).unwrap());
@@ -89,7 +91,7 @@ fn ramp(lit: [Lit; 3], depths: [u32; 3]) -> ([Picture; 2], Vec<Option<[f64; 3]>>
     (pictures, exact.collect())
 }
 
-/// Light that changes slowly over a smooth triangle keeps its mean; without dithering each pixel is to nearest.
+/// Dithering preserves the mean of light that changes slowly over a smooth triangle; without dithering each pixel is rounded to nearest.
 #[test]
 fn smooth_ramps_keep_their_mean() {
     let mut random = Random(1);
@@ -100,7 +102,7 @@ fn smooth_ramps_keep_their_mean() {
             1 => [0; 3].map(|_| random.integer(1 << 20, (1 << 23) - 1) as u32),
             _ => [0; 3].map(|_| random.integer(1 << 22, (1 << 24) - 256) as u32),
         };
-        // A small change, or all steps of a channel over the picture.
+        // The change over the picture: from a small change to all steps of a channel.
         let reach = [64, 600, 4096, 7936][round % 4];
         let start = random.integer(0, 7936 - reach);
         let lit = [0; 3].map(|_| {
@@ -124,13 +126,13 @@ fn smooth_ramps_keep_their_mean() {
     }
     let [dithered, nearest, step] = worst;
     println!(
-        "means within {dithered:.2}, to nearest {nearest:.2} of 255; to nearest within {step:.3} steps"
+        "error of the mean: dithered {dithered:.2}, rounded to nearest {nearest:.2} of 255; error of a pixel: {step:.3} steps"
     );
     assert!(dithered <= 1.0 && step <= 0.5 + 1.0 / 31.0 + 43.0 / 1000.0);
     assert!(nearest > 3.0);
 }
 
-/// A picture of one rectangle over the whole picture.
+/// Draws a rectangle that covers the whole picture.
 fn rectangle(texture: &[u8], part: u16, colour: Rgb565, rounding: Rounding) -> Picture {
     let part = Part {
         place: [(64 - part) / 2; 2],
@@ -169,7 +171,7 @@ fn grey(number: u32) -> Rgb565 {
     Rgb565((green / 2) << 11 | green << 5 | (green / 2))
 }
 
-/// Enlarged bilinear textures in light of any colour, and texels of one colour in any light, keep their mean.
+/// Dithering preserves the mean of enlarged bilinear textures, and of texels of one colour, in light of any colour.
 #[test]
 fn textures_keep_their_mean() {
     let mut random = Random(2);
@@ -208,7 +210,7 @@ fn textures_keep_their_mean() {
         worst[1] = worst[1].max(worst_mean(&nearest, &exact));
     }
     println!(
-        "bilinear: means within {:.2}, to nearest {:.2} of 255",
+        "bilinear, error of the mean: dithered {:.2}, rounded to nearest {:.2} of 255",
         worst[0], worst[1]
     );
     assert!(worst[0] <= 1.0 && worst[1] > 2.0);
@@ -221,11 +223,11 @@ fn textures_keep_their_mean() {
             .map(|i| f64::from(texel.channels()[i]) * f64::from(light.channels()[i]) / STEPS[i]);
         worst = worst.max(worst_mean(&picture, &vec![Some(exact); 320 * 180]));
     }
-    println!("texels in light: means within {worst:.2} of 255");
+    println!("texels in light, error of the mean: {worst:.2} of 255");
     assert!(worst <= 1.0);
 }
 
-/// A field with light, fog, sky and occlusion: the mean of the pixels is that of the painted colours of 8 bits.
+/// Dithering preserves the mean of the 8-bit colours of a field with light, fog, sky and occlusion.
 #[test]
 fn fields_keep_their_mean() {
     let appearance = Appearance {
@@ -264,7 +266,7 @@ fn fields_keep_their_mean() {
                 },
             )
             .unwrap();
-            // As the monitor shows them.
+            // Pixels are compared after the conversion to 8 bits, as on the monitor.
             let width = SIZE.0 as usize;
             for (x, y) in (0..SIZE.1 as usize / 8).flat_map(|y| (0..width / 8).map(move |x| (x, y)))
             {
@@ -280,13 +282,13 @@ fn fields_keep_their_mean() {
         }
     }
     println!(
-        "means within {:.2}, to nearest {:.2} of 255",
+        "field, error of the mean: dithered {:.2}, rounded to nearest {:.2} of 255",
         worst[0], worst[1]
     );
     assert!(worst[0] <= 1.0 && worst[1] > 2.0);
 }
 
-/// Flat triangles and texels without light have one colour that RGB565 has, in every pixel, with dithering and without it.
+/// Flat triangles, and texels without light, have the same RGB565 colour in every pixel, with and without dithering.
 #[test]
 fn exact_colours_are_not_dithered() {
     let mut random = Random(3);
@@ -296,7 +298,7 @@ fn exact_colours_are_not_dithered() {
     let both = [Rounding::Dithered, Rounding::Nearest];
     let pictures = both.map(|rounding| Picture::of_frame(&Frame { rounding, ..flat }));
     assert!(pictures[0].colour == pictures[1].colour);
-    // Smooth shading changes only with the light.
+    // With smooth shading, dithering changes a channel by at most one step.
     let smooth = MeshSubject {
         shading: Shading::Smooth,
         ..subject
@@ -313,7 +315,7 @@ fn exact_colours_are_not_dithered() {
     for filter in [Filter::Nearest, Filter::Bilinear] {
         for _ in 0..40 {
             let [texel, other] = [0; 2].map(|_| Rgb565(random.bits() as u16));
-            // Texels of one colour, without light; and in white, which has the colour of the light.
+            // Texels of one colour without light, then white texels in coloured light.
             for (texel, light) in [(texel, Rgb565::WHITE), (Rgb565::WHITE, other)] {
                 let texels = texture(filter, |_, _| texel);
                 for rounding in both {

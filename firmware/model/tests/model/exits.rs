@@ -1,4 +1,4 @@
-//! Properties of rays by exits with difficult origins and directions.
+//! Tests of rays by exits with difficult origins and directions.
 //!
 //! Origins are in units of 2^−12 field units, directions in units of 2^−27. Single rays with their expected results are in
 //! tools/reference/stiff/rays.toml.
@@ -13,9 +13,10 @@ use glint_vectors::rays::{ONE, frame};
 use rand::RngExt as _;
 use rand_pcg::Pcg64Mcg;
 
-/// A field unit.
+/// One field unit.
 const UNIT: i32 = 1 << 12;
-/// Half the side of a sponge of at most four levels, the radius of `sphere:1`, and 13.5 field units, a sixth of the sponge's side.
+/// Half the side of a sponge of at most four levels, which is also the radius of `sphere:1`; and a sixth of the sponge's side, 13.5 field
+/// units.
 const HALF: i32 = 81 << 11;
 const SIXTH: i32 = HALF / 3;
 
@@ -24,7 +25,7 @@ fn end_of(exits: &Exits) -> End {
     exits.end(&exits.cones(), &exits.ray(0, 0, 0))
 }
 
-/// A random difficult origin and direction: coordinates on borders and beside them, and components of 0 and 1 ulp.
+/// A random difficult origin and direction: coordinates on or next to borders, and components of 0 or 1 ulp.
 fn stiff(random: &mut Pcg64Mcg) -> ([i32; 3], [i32; 3]) {
     let place = [0; 3].map(|_| {
         let border = random.random_range(-60..60)
@@ -39,7 +40,7 @@ fn stiff(random: &mut Pcg64Mcg) -> ([i32; 3], [i32; 3]) {
     (place, direction)
 }
 
-/// All solids are symmetric, so a mirrored ray has the mirrored end, bit for bit.
+/// All solids are symmetric, so mirroring a ray mirrors its end, bit for bit.
 #[test]
 fn mirrored_rays_have_mirrored_ends() {
     let mut random = Pcg64Mcg::new(1);
@@ -55,7 +56,7 @@ fn mirrored_rays_have_mirrored_ends() {
             let axis = random.random_range(0..3);
             let (mut there, mut towards) = (eye, direction);
             (there[axis], towards[axis]) = (-eye[axis], !direction[axis]);
-            // A position in the cell about the origin is in [−32, 32) field units, so −32 has no mirror image.
+            // A position in the cell around the origin is in [−32, 32) field units, so −32 has no mirror image.
             if field.contains(',') && there.map(|x| x.abs() & 0x3FFFF).contains(&0x20000) {
                 continue;
             }
@@ -82,7 +83,7 @@ fn mirrored_rays_have_mirrored_ends() {
     assert!(steps <= 200, "{steps}");
 }
 
-/// After the prism around the eye, a ray is in an octahedron, or does not meet it.
+/// A ray that leaves the prism around the eye is in the octahedron, or does not meet the octahedron.
 #[test]
 fn an_octahedron_takes_one_evaluation() {
     let mut random = Pcg64Mcg::new(4);
@@ -147,7 +148,7 @@ fn rectangles_hold_all_pixels_that_see_a_sphere() {
     assert!(met > 10_000, "{met}");
 }
 
-/// Codes of intervals, and the coordinates that they stand for, in the order of both.
+/// Codes of intervals, and the coordinates that these codes represent, both in ascending order.
 #[test]
 fn codes_of_intervals_increase_and_return() {
     let eye = [1 << 20; 3];
@@ -172,13 +173,13 @@ fn codes_of_intervals_increase_and_return() {
             before = code;
         }
     }
-    // The digits of a cell of a sponge, from the first one, and the first digit above it.
+    // The digits of a sponge's cell, the most significant digit first, and the first digit above the sponge.
     let sponge = frame("menger:4", eye, [ONE, 0, 0]).solid.expect("a solid");
     assert_eq!(sponge.code(27 + 2 * 9 + 1), 0b1_01_10_00_01_00_00);
     assert_eq!(sponge.code(81), 0b1_11_00_00_00_00_00);
 }
 
-/// The constants of an eye make the same rays after conversion to the codes of the registers and back.
+/// The constants of an eye give the same rays after conversion to the register format and back.
 #[test]
 fn a_start_in_codes_makes_the_same_rays() {
     let mut random = Pcg64Mcg::new(3);

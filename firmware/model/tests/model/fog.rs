@@ -1,4 +1,4 @@
-//! Fog on meshes, compared with its share in f64.
+//! Tests of fog on meshes, compared with computations in f64.
 
 use glint_core::camera::Projection;
 use glint_core::colour::Rgb565;
@@ -9,12 +9,12 @@ use glint_model::{DepthScale, Fog, Frame, MeshSetup, MeshSubject, Subject};
 use glint_vectors::meshes::{self, at};
 use glint_vectors::{Camera, Picture, Random};
 
-/// The share of a fog in 255ths, in f64.
+/// The share that the fog hides, in 255ths, computed in f64.
 fn exact(density: U4_28, depth: Q32_32) -> f64 {
     255.0 * (1.0 - (-density.to_num::<f64>() * depth.to_num::<f64>()).exp())
 }
 
-/// Scales of depth codes, in perspective and in orthographic projection, of cameras at several distances.
+/// Scales of depth codes for cameras at several distances, in perspective and in orthographic projection.
 fn scales() -> Vec<DepthScale> {
     let mut random = Random(11);
     let mut scales = vec![];
@@ -31,8 +31,8 @@ fn scales() -> Vec<DepthScale> {
     scales
 }
 
-/// Each share is within 1.5/255 of the exact one at the depth of its code, and does not grow with the code: from fog that hides
-/// everything to fog that hides nothing.
+/// Each share is within 1.5/255 of the exact share at the depth of the code, and does not increase with the code. The densities range from
+/// fog that hides everything to fog that hides nothing.
 #[test]
 fn shares_of_all_densities() {
     let densities = [1e-6, 0.001, 0.02, 0.1, 0.5, 3.0, 15.99].map(U4_28::from_num);
@@ -73,7 +73,8 @@ fn offsets_fit_the_register() {
     }
 }
 
-/// Without density there is no fog; fog of no share changes no colour, and fog that hides everything leaves only its own.
+/// With the density 0 there is no fog. Fog with the share 0 does not change a colour, and fog that hides everything replaces the colour by
+/// the fog's colour.
 #[test]
 fn ends_of_the_fog() {
     let [scale, ..] = scales()[..] else { panic!() };
@@ -90,7 +91,7 @@ fn ends_of_the_fog() {
     }
 }
 
-/// The mean of a floor's colours in fog is that of the exact mixtures: dithering keeps it.
+/// The mean colour of a floor in fog equals the mean of the exact mixtures, because dithering preserves the mean.
 #[test]
 fn a_floor_recedes_into_fog() {
     let [left, right] = [-1.9, 1.9];

@@ -1,4 +1,4 @@
-//! Tests of frames: constants, drawing in one call, and the band lists of triangles.
+//! Tests of frames: constants, drawing with one call, and the band lists of triangles.
 
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
@@ -101,7 +101,7 @@ fn lists_name_the_triangles_of_their_bands() {
             let mut lists = vec![0; list_words];
             let mut counts = ListCounts::EMPTY;
             let mut put = vec![];
-            // Several writers append to the same lists.
+            // Several writers append to the same lists, one after the other.
             for end in [DESCRIPTORS / 4, DESCRIPTORS / 2, DESCRIPTORS] {
                 let mut writer = ListWriter::new(
                     &mut descriptors,

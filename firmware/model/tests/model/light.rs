@@ -1,4 +1,4 @@
-//! Light on meshes from a direction, with a colour, and ambient light.
+//! Tests of coloured directional light and ambient light on meshes.
 
 use glint_core::colour::{Rgb565, Shading, Winding};
 use glint_core::fixed::Q32_32;

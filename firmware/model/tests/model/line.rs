@@ -1,4 +1,4 @@
-//! Tests of lines with triangles, other lines and depths; `glint-reference` tests the exact pixels of single segments.
+//! Tests of lines in combination with triangles, other lines and depths. `glint-reference` tests the exact pixels of single segments.
 
 use glint_core::colour::Rgb565;
 use glint_core::picture::Samples;
@@ -41,7 +41,8 @@ fn a_polyline_has_its_joints_once() {
             let ahead = random.integer(0, 256 * 6);
             let beside = random.integer(-ahead, ahead);
             let ahead = if backward { -ahead } else { ahead };
-            // At equal distances the major axis is horizontal.
+            // The major axis is horizontal if both distances are equal, so a line with a vertical major axis needs a shorter distance along
+            // x.
             let [dx, dy] = if x_major {
                 [ahead, beside]
             } else {
@@ -71,7 +72,7 @@ fn a_polyline_has_its_joints_once() {
     }
 }
 
-/// The pieces of a line in all bands of a picture have the pixels and depths of the whole line.
+/// The pieces of a line in all bands of a picture have the same pixels and depths as the whole line.
 #[test]
 fn bands_leave_a_line_as_it_is() {
     let mut random = Random(4);
@@ -101,7 +102,7 @@ fn bands_leave_a_line_as_it_is() {
     }
 }
 
-/// A segment with an end point outside of the format of positions has no line.
+/// [`Line::new`] rejects a segment with an end point outside of the position format.
 #[test]
 fn positions_have_a_range() {
     let (low, high) = (-(1 << 19), (1 << 19) - 1);
@@ -110,8 +111,8 @@ fn positions_have_a_range() {
     assert!(Line::new(&[at([0, low - 1]), at([0, 0])]).is_none());
 }
 
-/// A line without depth test replaces all pixels, and stores the largest depth code. A tested line is hidden by nearer pixels, and
-/// replaces pixels of equal depth.
+/// A line without a depth test replaces all pixels, and stores the largest depth code. A line with a depth test is hidden by nearer pixels,
+/// and replaces pixels of equal depth.
 #[test]
 fn lines_meet_depths() {
     let ends = [[10, 10], [20, 10]].map(|[x, y]| at([256 * x + 128, 256 * y + 128]));
@@ -186,8 +187,8 @@ fn edges_with_bias_lie_in_front_of_their_face() {
     assert!(drawn > 50_000 && hidden_without > 1_000);
 }
 
-/// With four samples a pixel, a segment is two lines: the second covers the samples beside those of the first, on the other side of the
-/// segment. Ends at the limits of coordinates stay in range.
+/// With four samples per pixel, a segment is drawn as two lines: the second line covers the samples next to those of the first line, on the
+/// other side of the segment. Ends at the limits of the coordinates remain in range.
 #[test]
 fn segments_are_as_wide_as_pixels() {
     let mut random = Random(11);

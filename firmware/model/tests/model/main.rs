@@ -1,4 +1,4 @@
-//! Tests of the model against f64, a simple rasterizer and known pictures.
+//! Tests of the model, compared with f64 arithmetic, a simple rasterizer and known pictures.
 //!
 //! All tests are in one program, to avoid linking one program per file.
 
@@ -42,7 +42,7 @@ use glint_vectors::{Camera, Model, Random};
 /// 14 fraction bits.
 const RADII: [u32; 2] = [14_190, 56_756];
 
-/// The mesh of a model, in memory that is never freed.
+/// Encodes a model as a mesh, in memory that is never freed.
 fn mesh_of(model: &Model) -> Mesh<'static> {
     Mesh::new_checked(model.encoded().leak()).unwrap()
 }

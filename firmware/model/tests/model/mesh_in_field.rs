@@ -1,4 +1,4 @@
-//! A mesh in a field: common scale of depth codes, and occlusion.
+//! Tests of a mesh in a field: common scale of depth codes, and mutual occlusion.
 
 use glint_core::camera::View;
 use glint_core::field::{Field, Menger};
@@ -14,7 +14,7 @@ use crate::{cube, mesh_of};
 const SIZE: (u32, u32) = (320, 180);
 const WINDOW: Window = Window::whole(Size::W320);
 
-/// Draws three pictures with the same constants: the mesh, the field, and the mesh over the field.
+/// Draws three pictures with the same constants: the mesh alone, the field alone, and the mesh in the field.
 fn draw(mesh: &Mesh, field: &str, view: &View) -> [Picture; 3] {
     let field = Field::parse(field).unwrap();
     let options = FieldOptions::default();
@@ -104,8 +104,8 @@ fn what_is_nearer_is_seen() {
         let [mesh, field, both] = draw(&mesh, "box:1,1,1", &view);
         for i in 0..both.depth.len() {
             let (a, b) = (mesh.depth[i], field.depth[i]);
-            // At equal depth codes the mesh is shown, because it is drawn later. Where the mesh has no pixel, its code is 0: if both
-            // codes are 0, this is the background of the field.
+            // At equal depth codes the mesh is visible, because the mesh is drawn later. The code of a pixel that the mesh does not cover
+            // is 0. If the codes of mesh and field are 0, the field's background is visible.
             let (which, expected) = if b > a || a == 0 {
                 (1, &field)
             } else {
@@ -118,7 +118,7 @@ fn what_is_nearer_is_seen() {
     assert!(seen.iter().all(|&pixels| pixels > 500), "{seen:?}");
 }
 
-/// For every half width, the constants of a mesh and a field together are in the ranges for a single mesh and a single field.
+/// For every half width, the constants of a mesh in a field are in the ranges that are valid for a mesh alone and a field alone.
 #[test]
 fn shared_constants_keep_their_ranges() {
     let mut random = Random(3);

@@ -87,7 +87,7 @@ fn vertices_of_objects_against_f64() {
                     continue;
                 }
                 let error = error(found, [x, y, z]);
-                // The bound of docs/formats/camera.md.
+                // The error bound of docs/formats/camera.md.
                 let scale = f64::from(width) / 2.0 / view.half_width().to_num::<f64>();
                 let length = dot(world(position), world(position)).sqrt();
                 let d = [0, 1, 2].map(|i| place[i] - eye[i]);
@@ -117,7 +117,8 @@ fn vertices_of_objects_against_f64() {
     }
 }
 
-/// The intensity of a face follows the inverse transpose of its matrix, for a light at the camera and from a direction.
+/// The intensity of a face is that of a normal transformed by the inverse transpose of the matrix, for a light at the camera and a
+/// directional light.
 #[test]
 fn light_on_objects_against_f64() {
     let mut random = Random(31);
@@ -187,7 +188,7 @@ fn an_object_with_the_identity_is_the_mesh() {
     }
 }
 
-/// A copy of a mesh with transformed normals gives the picture of the mesh, for every shading, winding, clipping and light.
+/// A copy of a mesh with transformed normals gives the same picture as the mesh, for every shading, winding, clipping and light.
 #[test]
 fn a_copy_with_turned_normals_gives_the_same_picture() {
     let mut random = Random(33);
@@ -270,7 +271,7 @@ fn objects_share_one_depth() {
         };
         assert!(expected, "pixel {i}: {colour:#x}");
     }
-    // At equal positions every pixel has the colour of the later object.
+    // If both objects are at the same position, every pixel has the colour of the later object.
     let twice = of(
         &[object(at(0.0, 0.0), red), object(at(0.0, 0.0), blue)],
         view,
@@ -282,7 +283,7 @@ fn objects_share_one_depth() {
     assert!(empty.colour.iter().all(|&x| x == 0) && empty.covered() == 0);
 }
 
-/// A frame draws as many triangles as its objects in frames of their own, including clipped triangles.
+/// A frame with several objects draws as many triangles as one frame per object, including clipped triangles.
 #[test]
 fn clipped_objects_are_drawn() {
     let mesh = mesh_of(&Model::sphere(0.5, 6));

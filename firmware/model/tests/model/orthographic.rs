@@ -1,4 +1,4 @@
-//! Orthographic projection: positions and linear depth codes of vertices, compared with f64.
+//! Tests of orthographic projection: positions and linear depth codes of vertices, compared with f64.
 
 use glint_core::appearance::Appearance;
 use glint_core::camera::{Projection, View};
@@ -69,8 +69,8 @@ fn aimed(random: &mut Random, size: (u32, u32), half_width: f64, reach: f64) -> 
     }
 }
 
-/// The bound of docs/formats/camera.md for the error of a position, in 1/256 pixel: from snapping, and from the rounded rows for a point
-/// at `distance`.
+/// The error bound of docs/formats/camera.md for a position, in 1/256 pixel: the error of snapping, plus the error of the rounded rows for
+/// a point at `distance`.
 fn bound(frame: &MeshSetup, distance: f64) -> f64 {
     0.54 + 256.0 * 3f64.sqrt() * 0.5f64.powi(frame.scale_shift as i32 + 1) * distance
 }
@@ -114,7 +114,7 @@ fn places_and_depths_against_f64() {
                 size.0, size.1
             );
             assert!(share <= 1.0 && depth <= 1.01);
-            // The bound for a mesh in a box of 1×1×1 world units.
+            // The error bound for a mesh in a box of 1×1×1 world units.
             if index == 0 {
                 assert!(worst <= 1.0 && narrow <= 2.0);
             }
@@ -122,7 +122,7 @@ fn places_and_depths_against_f64() {
     }
 }
 
-/// The projection, following the steps in docs/formats/camera.md, with 128-bit numbers.
+/// Compares the projection with the steps in docs/formats/camera.md, computed in 128-bit numbers.
 #[test]
 fn steps_as_written() {
     let mut random = Random(51);
@@ -164,8 +164,8 @@ fn steps_as_written() {
     }
 }
 
-/// For meshes of all sizes and at all distances: of two vertices more than 1/32 code apart, the nearer has the larger depth code before
-/// rounding.
+/// For meshes of all sizes, at all distances: of two vertices whose depths differ by more than 1/32 code, the nearer vertex has the larger
+/// depth code before rounding.
 #[test]
 fn nearer_vertices_have_larger_codes() {
     let mut random = Random(52);
@@ -193,7 +193,7 @@ fn nearer_vertices_have_larger_codes() {
             assert_eq!(nearer > farther, p.1 > q.1, "{a:?} and {b:?} in {view:?}");
         }
         if reach > 0.002 {
-            // A mesh's bounding sphere wholly beyond the near plane uses half of the codes or more.
+            // A bounding sphere that is completely beyond the near plane uses at least half of the codes.
             let codes = f64::from(radius) / 16384.0 * 2.0 * 2f64.powi(19 - frame.depth.exponent);
             fewest = fewest.min(codes as u32);
         }
@@ -253,7 +253,7 @@ fn objects_against_f64() {
     assert!(count > 10_000 && halved > 100 && share <= 1.0 && depth <= 8.0);
 }
 
-/// A cube of side 1 covers the same square from every distance, and of two cubes in line with the eye the nearer is visible.
+/// A cube of side 1 covers the same square at every distance. Of two cubes on a line with the eye, the nearer cube is visible.
 #[test]
 fn sizes_do_not_depend_on_the_distance() {
     for distance in [1.0, 2.0, 7.9] {
@@ -320,7 +320,7 @@ fn refused_frames() {
     assert!(width < least && setup(least).is_ok(), "{least}");
 }
 
-/// Light is linear on the screen: compares the light of each pixel with f64, in steps of a channel.
+/// Compares the light of each pixel, which is linear on the screen, with f64, in steps of a channel.
 #[test]
 fn light_against_f64() {
     let mut random = Random(54);

@@ -51,7 +51,7 @@ fn fog_falls_off_as_e_to_its_depth() {
 
 #[test]
 fn a_frame_without_fog_has_the_palette_it_was_given() {
-    // Rays by exits, and rays that march.
+    // A field of rays by exits, and a field of marching rays.
     for (field, half, last) in [
         ("box:1,1,1", 7, 5),
         ("smooth:0.3,box:1,1,1+sphere:0.7", 40, 34),

@@ -1,4 +1,4 @@
-//! The vertex stage: snapped positions and depths of vertices, compared with a projection in f64.
+//! Tests of the vertex stage: snapped positions and depths of vertices, compared with a projection in f64.
 
 use std::collections::BTreeSet;
 
@@ -12,7 +12,7 @@ use crate::{RADII, error};
 /// The smallest and the largest half width of a camera, in world units.
 const HALF_WIDTHS: [f64; 2] = [0.0087, 115.0];
 
-/// Largest errors of positions in 1/256 pixel, and a count of positions.
+/// Largest errors of positions in 1/256 pixel, and the number of positions.
 #[derive(Clone, Copy, Default)]
 struct Worst {
     /// Largest error of a position on the screen.
@@ -51,7 +51,7 @@ fn aimed(
         let eye = random.direction().map(|x| x * distance);
         let towards = [0, 1, 2].map(|i| world(point)[i] - eye[i]);
         let length = glint_vectors::math::dot(towards, towards).sqrt();
-        // Position in pixels; with probability 1/2 on the screen.
+        // Position of the point in pixels, which is on the screen with probability 1/2.
         let (x, y) = if random.coin() {
             (
                 random.real(0.0, width.into()),
@@ -94,7 +94,7 @@ fn places_against_f64() {
             let view = camera.rounded();
             let frame = MeshSetup::new(&view, width, height, RADII[index]).unwrap();
             for _ in 0..4 {
-                // Tests positions close to the point, so that they are also close to it on the screen.
+                // Tests positions near the point, which are therefore also near the point on the screen.
                 let spread = (z * half_width * 16384.0).min(20_000.0) as i64 + 1;
                 let position = point.map(|x| {
                     (i64::from(x) + random.integer(-spread, spread)).clamp(-32768, 32767) as i16
@@ -112,13 +112,13 @@ fn places_against_f64() {
             same.count, same.screen, same.guard, unrounded.screen, unrounded.guard
         );
         assert!(same.count > 20_000);
-        // `unrounded.guard` has no bound, because a wide camera amplifies the rounding of its basis for positions off the
-        // screen.
+        // `unrounded.guard` has no bound, because for positions outside of the screen a wide camera amplifies the rounding errors of the
+        // camera's axes.
         assert!(same.guard <= bound && unrounded.screen <= bound);
     }
 }
 
-/// Tests horizontal fields of view from 1° to 179°, including 150°, each with the nearest near plane that it allows.
+/// Tests horizontal fields of view from 1° to 179°, including 150°, each with the nearest allowed near plane.
 #[test]
 fn fields_of_view_against_f64() {
     let mut random = Random(6);
@@ -149,7 +149,7 @@ fn fields_of_view_against_f64() {
                 worst.count, worst.screen, worst.guard
             );
             assert!(worst.count > 1_000);
-            // The bound of docs/formats/triangle.md, with |D|/Z at a corner of the picture.
+            // The error bound of docs/formats/triangle.md, with |D|/Z at a corner of the picture.
             let longest = (1.0 + 1.3164 * half_width * half_width).sqrt();
             let rows = 0.5f64.powi(shift as i32 + 1) + f64::from(width) * 0.5f64.powi(25);
             let bound = 0.75 + 256.0 * 3f64.sqrt() * longest * rows;
@@ -168,7 +168,7 @@ fn fields_of_view_against_f64() {
 }
 
 /// Compares the depth w of a vertex, in 1/64 code, with K/z, and the scale K with its definition: the nearest possible depth of the mesh
-/// must have the code 2^18 − 4, or less by a relative 2^−16 at most.
+/// must have the code 2^18 − 4, or a code that is lower by a relative 2^−16 at most.
 #[test]
 fn depths_against_f64() {
     let mut random = Random(2);
@@ -202,7 +202,7 @@ fn depths_against_f64() {
     assert!(worst <= 4.5);
 }
 
-/// Tests extreme accepted cameras: nothing overflows, and positions are correct.
+/// Tests extreme valid cameras: nothing overflows, and positions are correct.
 #[test]
 fn extremes() {
     let mut random = Random(3);
@@ -259,7 +259,7 @@ fn extremes() {
                                 Projected::Visible(_) => assert!(z > near - 1e-6 && !outside),
                                 Projected::BeyondGuard(place) => {
                                     assert!(z > near - 1e-6 && !inside);
-                                    // A saturated position must be beyond the same side of the guard band as the exact one.
+                                    // A saturated position must be beyond the same side of the guard band as the exact position.
                                     let side = |place: i32, x: f64| {
                                         x.abs() < 2046.9
                                             || f64::from(place) * x >= 256.0 * 2046.0 * x.abs()
@@ -280,7 +280,7 @@ fn extremes() {
     assert!(seen > 5000, "{seen}");
 }
 
-/// Compares the vertex stage with its steps in docs/formats/triangle.md, computed in 128 bits.
+/// Compares the vertex stage with the steps in docs/formats/triangle.md, computed in 128-bit numbers.
 #[test]
 fn steps_as_written() {
     let mut random = Random(4);
@@ -346,8 +346,8 @@ fn steps_as_written() {
     }
 }
 
-/// The scale shift is the largest, up to 18, for which the components of the scaled camera axes `u` and `v` fit 25 bits. This is tested
-/// with the longest axes that a camera may have, over the whole range of half widths.
+/// The scale shift is the largest number up to 18 for which the components of the scaled camera axes `u` and `v` fit 25 bits. Tested with
+/// the longest axes that a camera may have, over the whole range of half widths.
 #[test]
 fn rows_fill_their_width() {
     let mut random = Random(5);

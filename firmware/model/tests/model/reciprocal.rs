@@ -1,4 +1,4 @@
-//! Tests the reciprocal of every mantissa.
+//! Exhaustive test of the reciprocal, for every mantissa.
 
 use glint_model::triangle::reciprocal::{Reciprocal, SEED, recip};
 

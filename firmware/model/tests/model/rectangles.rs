@@ -1,4 +1,4 @@
-//! Rectangles of the screen against integers and f64.
+//! Tests of rectangles of the screen, compared with integer arithmetic and f64.
 
 use glint_core::appearance::Appearance;
 use glint_core::camera::Projection;
@@ -20,7 +20,7 @@ use crate::cube;
 /// The depth code of an opaque rectangle.
 const NEAREST: u32 = (1 << 18) - 1;
 
-/// A texture whose neighbouring texels differ, with transparent texels.
+/// A texture with transparent texels, in which neighbouring texels differ.
 fn texture(size_log2: [u8; 2], filter: Filter, blend: Blend) -> Vec<u8> {
     let [width, height] = size_log2.map(|side| 1 << side);
     let texels = (0..width * height).map(|i: u32| (37 * (i % width) + 2011 * (i / width)) as u16);
@@ -39,7 +39,7 @@ fn texture(size_log2: [u8; 2], filter: Filter, blend: Blend) -> Vec<u8> {
     .unwrap()
 }
 
-/// A rectangle with a random part, place and direction, in its size or enlarged.
+/// A rectangle with a random part and position, possibly mirrored, `scale` times as large as the part.
 fn random_rectangle<'a>(random: &mut Random, texture: Texture<'a>, scale: i64) -> Rectangle<'a> {
     let (mut part_place, mut part_size) = ([0; 2], [0; 2]);
     for axis in 0..2 {
@@ -62,7 +62,7 @@ fn random_rectangle<'a>(random: &mut Random, texture: Texture<'a>, scale: i64) -
     }
 }
 
-/// The texel that a pixel of a rectangle enlarged by a whole number shows, in integers; `None` beside the rectangle.
+/// The texel that a pixel shows, for a rectangle enlarged by an integer factor; `None` outside of the rectangle.
 fn texel(rectangle: &Rectangle, pixel: [usize; 2]) -> Option<[u32; 2]> {
     let mut found = [0; 2];
     for axis in 0..2 {
@@ -87,7 +87,8 @@ fn scene(subject: Subject<'_>) -> Frame<'_> {
     }
 }
 
-/// Checks that rectangles show the right texels over a frame, and that the other pixels stay. Returns the number of pixels shown.
+/// Checks that rectangles show the correct texels over a frame, and that all other pixels are unchanged. Returns the number of pixels
+/// shown.
 fn check(frame: &Frame, rectangles: &[Rectangle]) -> usize {
     let mut expected = Picture::of_frame(frame);
     let mut shown = 0;
@@ -123,8 +124,8 @@ fn check(frame: &Frame, rectangles: &[Rectangle]) -> usize {
     shown
 }
 
-/// Each texel of a part is on its pixel, or on its square of pixels, wherever the rectangle, its part, its filter and its blending: in front
-/// of a mesh in each projection, and in front of other rectangles.
+/// Each texel of a part covers exactly its pixel or its square of pixels, for any position, part, filter and blending, in front of a mesh
+/// in each projection, and in front of other rectangles.
 #[test]
 fn each_texel_is_on_its_pixels() {
     let mut random = Random(5);
@@ -146,8 +147,8 @@ fn each_texel_is_on_its_pixels() {
     assert!(shown > 500_000);
 }
 
-/// Positions are within 1/128 texel of the exact ones in rectangles of up to 2048 pixels, and within 1/27 in all; no pixel shows a texel
-/// beyond the part.
+/// Positions are within 1/128 texel of the exact positions in rectangles of up to 2048 pixels, and within 1/27 texel in larger rectangles.
+/// No pixel shows a texel beyond the part.
 #[test]
 fn positions_are_those_of_pixel_centres() {
     let mut random = Random(6);
@@ -204,7 +205,7 @@ fn positions_are_those_of_pixel_centres() {
     assert!(worst[0] < 1.0 / 128.0 && worst[1] < 1.0 / 27.0, "{worst:?}");
 }
 
-/// A rectangle whose texels are smaller than pixels shows the mip level whose texels are as large as pixels.
+/// A rectangle whose texels are smaller than pixels shows the mip level whose texels have the size of pixels.
 #[test]
 fn small_rectangles_show_smaller_levels() {
     let bytes = encode(&Source {
@@ -236,7 +237,7 @@ fn small_rectangles_show_smaller_levels() {
     }
 }
 
-/// A rectangle without pixels or texels, or whose part is beyond its texture, is not drawn.
+/// A rectangle without pixels or texels, or with a part beyond the texture, is not drawn.
 #[test]
 fn invalid_rectangles_are_not_drawn() {
     let bytes = texture([3, 3], Filter::Nearest, Blend::Opaque);
@@ -289,7 +290,7 @@ fn invalid_rectangles_are_not_drawn() {
     }
 }
 
-/// White texels have the colour of the rectangle.
+/// White texels are shown in the colour of the rectangle.
 #[test]
 fn texels_are_multiplied_by_the_colour() {
     let bytes = encode(&Source {
@@ -312,7 +313,7 @@ fn texels_are_multiplied_by_the_colour() {
     }
 }
 
-/// Rectangles are in front of fields, meshes in fields, and skies, and without fog.
+/// Rectangles are in front of fields, meshes in fields, and skies, and have no fog.
 #[test]
 fn rectangles_are_in_front_of_everything() {
     let appearance = Appearance {
@@ -345,7 +346,7 @@ fn rectangles_are_in_front_of_everything() {
     }
 }
 
-/// Each eye of a stereo picture has the rectangles at the same place, also in front of a field.
+/// Both eyes of a stereo picture show the rectangles at the same position, also in front of a field.
 #[test]
 fn both_eyes_have_the_rectangles() {
     let bytes = texture([5, 6], Filter::Nearest, Blend::Opaque);
@@ -380,7 +381,7 @@ fn both_eyes_have_the_rectangles() {
     }
 }
 
-/// The edges of a mesh are behind rectangles that are blended with them.
+/// Rectangles are blended with the edges of a mesh behind them.
 #[test]
 fn edges_are_drawn_before_rectangles() {
     let bytes = texture([5, 6], Filter::Nearest, Blend::ALL[4]);

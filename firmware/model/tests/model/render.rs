@@ -27,15 +27,15 @@ fn a_sphere_is_a_disc_without_holes() {
             picture.stats.triangles_in
         );
         assert_eq!(picture.stats.clipped, 0);
-        // Front faces of a convex body do not overlap: every covered pixel is drawn exactly once.
+        // Front faces of a convex mesh do not overlap, so every covered pixel is drawn exactly once.
         assert_eq!(picture.stats.pixels_drawn, picture.covered() as u64);
         assert_eq!(picture.stats.pixels_covered, picture.stats.pixels_drawn);
         for row in picture.coverage().chunks(size.0 as usize) {
             let span: Vec<usize> = (0..row.len()).filter(|&i| row[i]).collect();
             assert!(span.windows(2).all(|pair| pair[1] == pair[0] + 1), "a hole");
         }
-        // The outline of the sphere is a disc, bounded by the lines of sight tangent to the sphere; the mesh
-        // approximates it by 24 rings.
+        // The outline of the sphere is a circle, formed by the rays that are tangent to the sphere. The mesh approximates the sphere by 24
+        // rings.
         let distance: f64 = (9.0f64 + 0.09 + 0.04).sqrt();
         let radius = f64::from(size.0) / 2.0 / 0.9 * 0.5 / (distance * distance - 0.25).sqrt();
         let disc = std::f64::consts::PI * radius * radius;
@@ -50,7 +50,7 @@ fn a_sphere_is_a_disc_without_holes() {
 }
 
 /// Draws a sphere with and without culling: the pictures are equal, because culling removes only hidden faces. Then draws the sphere with
-/// reversed winding: culling now removes its near side, so its far side is visible.
+/// reversed winding: culling now removes the near side, so the far side is visible.
 #[test]
 fn culling_and_windings() {
     let sphere = Model::sphere(0.5, 12);
@@ -114,7 +114,7 @@ fn order() {
     assert!(parts > 100, "{parts}");
 }
 
-/// A mesh in two chunks gives the same picture as the same triangles in one chunk.
+/// A mesh in two chunks gives the same picture as a mesh with the same triangles in one chunk.
 #[test]
 fn chunks() {
     let mut random = Random(5);
@@ -227,8 +227,7 @@ fn an_eye_too_far_for_a_mesh_is_refused() {
     );
 }
 
-/// Draws random checked meshes from random cameras: no overflow, no panic, and every drawn triangle
-/// within its bit widths.
+/// Draws random valid meshes from random cameras. Nothing overflows or panics, and the numbers of every drawn triangle fit their formats.
 #[test]
 fn anything_goes() {
     let mut random = Random(6);

@@ -1,4 +1,4 @@
-//! Pictures with four samples a pixel.
+//! Tests of pictures with four samples per pixel.
 
 use glint_core::appearance::Appearance;
 use glint_core::camera::Projection;
@@ -23,7 +23,7 @@ fn divided<'a>(subject: Subject<'a>, camera: &Camera) -> Frame<'a> {
     }
 }
 
-/// The averages of a frame's parts.
+/// Draws the parts of a frame and averages their samples.
 fn averaged(frame: &Frame) -> Vec<u16> {
     let mut picture = vec![0; frame.size.pixel_count()];
     for part in frame.parts() {
@@ -33,7 +33,8 @@ fn averaged(frame: &Frame) -> Vec<u16> {
     picture
 }
 
-/// Over 4×2 pixels, samples of one colour keep it, and the mean of all mixtures of two colours is exact.
+/// In a block of 4×2 pixels, the average of samples of one colour is this colour, and the mean of the averages of two mixed colours is
+/// exact.
 #[test]
 fn averages_keep_the_mean() {
     for (high, most) in [(0xF800_u16, 31.0), (0x07E0, 63.0), (0x001F, 31.0)] {
@@ -60,7 +61,7 @@ fn averages_keep_the_mean() {
     assert_eq!(pixels, [0xFFFF; 4]);
 }
 
-/// The mean of a sky's or a fog's colour is kept by both roundings: of the samples, and of their averages.
+/// Neither the rounding of the samples nor the rounding of their averages changes the mean colour of a sky or of fog.
 #[test]
 fn dithered_samples_keep_the_mean() {
     let rounding = Rounding::Dithered;
@@ -88,7 +89,7 @@ fn dithered_samples_keep_the_mean() {
     }
 }
 
-/// In random frames, a picture with four samples a pixel is the average of a picture of twice the width and height, sample for sample.
+/// In random frames, a picture with four samples per pixel is the average of a picture of twice the width and height, sample for sample.
 #[test]
 fn pictures_are_averages_of_larger_pictures() {
     let mut random = Random(13);
@@ -114,7 +115,7 @@ fn pictures_are_averages_of_larger_pictures() {
             samples: Samples::Four,
             ..one
         };
-        // A near plane that is too close for the picture's width.
+        // The near plane is too near for the width of the picture.
         if one.constants().is_err() {
             assert!(four.constants().is_err());
             continue;
@@ -144,7 +145,8 @@ fn quarters<'a>(frame: &Frame<'a>) -> [Frame<'a>; 4] {
     Quarter::ALL.map(|quarter| Frame { quarter, ..*frame })
 }
 
-/// In 10,000 random frames every vertex has the same place in all quarters, so the edges of triangles continue from one to the next.
+/// In 10,000 random frames every vertex has the same position in all quarters, so the edges of triangles are continuous across the borders
+/// of quarters.
 #[test]
 fn quarters_have_the_same_vertices() {
     let mut random = Random(11);
@@ -159,7 +161,7 @@ fn quarters_have_the_same_vertices() {
                 .update(&part)
                 .map(|()| (part.window(), *constants.mesh().unwrap()))
         });
-        // A near plane that is too close for the picture's width.
+        // The near plane is too near for the width of the picture.
         let [Ok(first), Ok(second), Ok(third), Ok(last)] = parts else {
             assert!(parts.iter().all(Result::is_err));
             continue;
@@ -183,8 +185,8 @@ fn quarters_have_the_same_vertices() {
     assert!(compared > 20_000, "{compared}");
 }
 
-/// The rays of neighbouring quarters continue each other: the ray beyond the last column or line of a quarter is the first ray of the next
-/// one, within the rounding of D.
+/// Rays are continuous across the borders of quarters: the ray beyond the last column or line of a quarter is the first ray of the next
+/// quarter, up to the rounding of D.
 #[test]
 fn quarters_have_the_same_rays() {
     let mut random = Random(12);
@@ -203,7 +205,7 @@ fn quarters_have_the_same_rays() {
         });
         let [width, height] = frame.size.pixels().map(|size| size as i32);
         for row in [0, 100, height - 1] {
-            // An error of a step's rounding, over half of a picture.
+            // The rounding error of a step, accumulated over half a picture.
             let most = 1 + width / 2 + height / 2;
             for (left, right, along) in [(0, 1, [width, row]), (2, 3, [width, row])] {
                 let [here, there] = [(left, along), (right, [0, row])].map(|(number, [x, y])| {

@@ -1,4 +1,4 @@
-//! The self-test's stored checksums equal those of the model's pictures.
+//! Test that the stored checksums of the self-test are those of the model's pictures.
 
 use glint_core::mesh::Mesh;
 use glint_core::shape::MAX_BYTES;
@@ -7,7 +7,7 @@ use glint_model::Frame;
 use glint_model::selftest::{MESH_SHAPE, TestPicture};
 use glint_vectors::Picture;
 
-/// Returns the contents of the file `checksums.rs`.
+/// Returns the contents of the file `checksums.rs` for these checksums.
 fn file(checksums: &[u32]) -> String {
     let lines: String = checksums
         .iter()
@@ -24,7 +24,7 @@ pub(super) const STORED: [u32; {}] = [
     )
 }
 
-/// The picture of a frame, or of both eyes with the counts of the left one.
+/// Draws the picture of a frame, or of both eyes. For two eyes, returns the counts of the left eye.
 fn drawn(frame: &Frame) -> Picture {
     let Some(eyes) = frame.eyes().unwrap() else {
         let mut picture = Picture::of_frame(frame);
@@ -48,7 +48,8 @@ fn drawn(frame: &Frame) -> Picture {
     left
 }
 
-/// Draws every picture, and compares its checksum with the stored one; with `GLINT_UPDATE` in the environment, stores it.
+/// Draws every picture, and compares the picture's checksum with the stored checksum. With the environment variable `GLINT_UPDATE`, stores
+/// the checksums instead.
 #[test]
 fn the_stored_checksums_are_those_of_the_model() {
     #[repr(align(16))]
@@ -60,7 +61,7 @@ fn the_stored_checksums_are_those_of_the_model() {
     for picture in TestPicture::ALL {
         let mut draw = |frame: &Frame| {
             let Picture { colour, stats, .. } = drawn(frame);
-            // Rectangles follow clipped triangles.
+            // Rectangles are drawn after clipped triangles, so the picture must contain some.
             assert!(picture != TestPicture::Texture || stats.clipped > 0);
             let bytes = colour.iter().flat_map(|colour| colour.to_le_bytes());
             seen.push(crc32(&bytes.collect::<Vec<_>>()));

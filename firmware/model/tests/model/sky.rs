@@ -1,4 +1,4 @@
-//! The sky behind meshes, compared with its height in f64.
+//! Tests of the sky behind meshes: heights compared with f64.
 
 use glint_core::light::Gradient;
 use glint_core::picture::{Quarter, Samples, Size, Window};
@@ -6,7 +6,7 @@ use glint_model::Sky;
 use glint_vectors::camera::Size as Pixels;
 use glint_vectors::{Camera, Random};
 
-/// A gradient without light.
+/// A gradient whose colours are all black, for tests of heights.
 fn gradient(is_fixed: bool) -> Gradient {
     Gradient {
         colours: [[0; 3]; 3],
@@ -14,7 +14,7 @@ fn gradient(is_fixed: bool) -> Gradient {
     }
 }
 
-/// The height of each group is the component along z of the ray through its middle.
+/// The height of each group is the z component of the ray through the group's middle.
 #[test]
 fn heights_of_random_cameras() {
     let mut random = Random(7);
@@ -40,7 +40,7 @@ fn heights_of_random_cameras() {
             }
         }
         println!("half width {half_width}: height within {worst:.2e}");
-        // Each step is off by at most half a unit: 80 groups and 360 lines from the middle, which is within a unit.
+        // The height of the middle has an error of at most one unit, and each of up to 80 groups and 360 lines adds at most half a unit.
         assert!(
             worst < 221.0 / f64::from(1 << 23),
             "half width {half_width}"
@@ -48,7 +48,7 @@ fn heights_of_random_cameras() {
     }
 }
 
-/// The height of a fixed gradient is that of the middle of each line, for all cameras, sizes, samples and windows.
+/// A fixed gradient has, in each line, the height of the line's middle, for all cameras, sizes, samples and windows.
 #[test]
 fn heights_of_fixed_gradients() {
     let mut random = Random(8);
@@ -78,7 +78,7 @@ fn heights_of_fixed_gradients() {
             }
         }
         println!("{size}: height within {worst:.2e}");
-        // A step is off by at most half a unit, 360 lines from the middle.
+        // Each of up to 360 lines from the middle adds an error of at most half a unit.
         assert!(worst < 181.0 / f64::from(1 << 23), "{size}");
     }
 }

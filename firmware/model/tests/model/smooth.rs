@@ -16,7 +16,7 @@ fn any_colour(random: &mut Random) -> Rgb565 {
     Rgb565(random.bits() as u16)
 }
 
-/// Equal light at all vertices gives exactly the light's colour in all pixels, at all depths and for triangles of any shape.
+/// With equal light at all vertices, all pixels have exactly the colour of the light, at all depths and for triangles of any shape.
 #[test]
 fn equal_light_is_a_flat_colour() {
     let mut random = Random(1);
@@ -60,7 +60,7 @@ fn quotients_of_anything() {
             colour(light, depth, Rounding::Dithered);
         }
     }
-    // Tests the largest light and a light slightly below 0, at the smallest and the largest depth.
+    // The largest light, and a light slightly below 0, at the smallest and the largest depth.
     for codes in [228u32, (1 << 18) - 4] {
         let depth = (codes << 14) + (1 << 13);
         let most = (u64::from(depth) * 63 / 64) as u32;
@@ -75,8 +75,7 @@ fn quotients_of_anything() {
     }
 }
 
-/// The light of a vertex equals flat shading with the normal of the vertex, for each side of the triangle. For one of the
-/// two sides it is 0.
+/// The light of a vertex equals flat shading with the normal of the vertex, for each side of the triangle. The light of one side is 0.
 #[test]
 fn light_is_that_of_flat_shading() {
     let mut random = Random(3);
@@ -103,8 +102,8 @@ fn light_is_that_of_flat_shading() {
     assert!(front > 3000 && back > 3000, "{front}, {back}");
 }
 
-/// The light at a cut vertex is interpolated linearly between the ends of the edge, and rounded. Both triangles at the edge get the same
-/// light.
+/// The light at a vertex that clipping creates is interpolated linearly between the ends of the edge, and rounded. Both triangles at the
+/// edge get the same light.
 #[test]
 fn cut_edges_have_light_in_between() {
     let mut random = Random(4);

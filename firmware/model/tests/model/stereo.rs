@@ -21,8 +21,8 @@ fn stereo(half_separation: f64, zero_parallax: f64) -> Stereo {
     }
 }
 
-/// The x coordinate in pixels of a position in the picture of an eye that is `aside` to the right of the camera: the position is projected
-/// from this eye to the plane of zero parallax, and the result from the camera to the picture.
+/// The x coordinate, in pixels, of a position in the picture of an eye that is `aside` to the right of the camera. The position is
+/// projected from this eye to the plane of zero parallax, and then from the camera to the picture.
 fn column(camera: &Camera, position: [f64; 3], aside: f64, zero: f64, width: u32) -> f64 {
     let d = [0, 1, 2].map(|i| position[i] - camera.eye[i]);
     let (along, z) = (dot(camera.u, d), dot(camera.n, d));
@@ -31,7 +31,8 @@ fn column(camera: &Camera, position: [f64; 3], aside: f64, zero: f64, width: u32
     half + on_plane / zero * half / camera.half_width
 }
 
-/// Positions in the pictures of both eyes are within 1/256 pixel of the f64 positions, or 2/256 in the largest picture, as with one eye.
+/// Positions in the pictures of both eyes are within 1/256 pixel of the positions in f64, or 2/256 pixel in the largest picture, as with
+/// one eye.
 #[test]
 fn eyes_against_f64() {
     let mut random = Random(17);
@@ -67,7 +68,8 @@ fn eyes_against_f64() {
     }
 }
 
-/// Anaglyph colour of a pixel in the pictures `left` and `right` of the eyes, by the formulas of docs/formats/camera.md in integers.
+/// Anaglyph colour of a pixel in the pictures `left` and `right` of the eyes, computed in integers with the formulas of
+/// docs/formats/camera.md.
 fn composed(tint: Tint, left: u16, right: u16) -> u16 {
     let grey = |pixel: u16| {
         let [r, g, b] = Rgb565(pixel).to_rgb888().map(u32::from);
@@ -81,14 +83,14 @@ fn composed(tint: Tint, left: u16, right: u16) -> u16 {
     (left / 8 * 2048 + green / 4 * 32 + right / 8) as u16
 }
 
-/// With a shift of whole pixels, the picture of each eye equals the picture of one eye at its position, moved by a number of columns,
-/// except for the rounding of positions.
+/// If the eyes' pictures are shifted by whole pixels, the picture of each eye equals the picture of a single eye at the same position,
+/// moved by a number of columns, except for the rounding of positions.
 #[test]
 fn eyes_see_shifted_pictures_of_one_eye() {
     let mesh = mesh_of(&Model::sphere(0.5, 12));
     let (separation, columns) = (0.1, 16);
     let camera = Camera::looking([1.0, -2.0, 0.8], [0.0; 3], 0.5, 0.1);
-    // A shift of 16 of the 160 pixels of half a picture.
+    // With zero parallax at this distance, the pictures are shifted by 16 of the 160 pixels of half a picture.
     let zero = separation / (camera.half_width * f64::from(columns) / 160.0);
     let view = camera.rounded();
     let stereo = stereo(separation, zero);
@@ -120,7 +122,7 @@ fn eyes_see_shifted_pictures_of_one_eye() {
         let expected = left.iter().zip(&right);
         let expected = expected.map(|(&left, &right)| composed(tint, left, right));
         let expected = words(&expected.collect::<Vec<_>>());
-        // Also tests pictures that end within a cache line.
+        // Includes pictures whose end is within a cache line.
         for pixels in [left.len(), 2 * 11] {
             let mut both = words(&left[..pixels]);
             let eyes = glint_model::Eyes { tint, ..eyes };
@@ -138,7 +140,7 @@ fn words(pixels: &[u16]) -> Vec<u32> {
         .collect()
 }
 
-/// Two eyes at one position give the picture of one eye, in grey.
+/// Two eyes at the same position give the picture of one eye, in grey.
 #[test]
 fn eyes_at_one_place() {
     let view = Camera::looking([1.0, -2.0, 0.8], [0.0; 3], 0.5, 0.1).rounded();

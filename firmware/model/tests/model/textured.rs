@@ -1,4 +1,5 @@
-//! Textures on triangles against exact perspective: positions in the texture, mip levels, and the colours of whole pictures.
+//! Tests of textures on triangles, compared with exact perspective: positions in the texture, mip levels, and the colours of whole
+//! pictures.
 
 use glint_core::colour::{Rgb565, Rounding, Shading};
 use glint_core::light::{Light, MeshLighting};
@@ -40,13 +41,13 @@ fn levels(size_log2: [u8; 2]) -> Vec<u8> {
     .unwrap()
 }
 
-/// A linear function over the corners of a triangle.
+/// The linear function with these values at the corners of a triangle.
 fn blend(weights: [f64; 3], values: [f64; 3]) -> f64 {
     weights.iter().zip(values).map(|(a, b)| a * b).sum()
 }
 
-/// Positions in random triangles are within a sixteenth of a texel of the exact ones, where the depth code is at least 2^12 and the
-/// triangle has at most four repeats of 1024 texels. Mip levels are within an eighth of their limits.
+/// Positions in random triangles are within a sixteenth of a texel of the exact positions, where the depth code is at least 2^12 and the
+/// triangle has at most four repeats of 1024 texels. Mip levels change within an eighth of the exact limits.
 #[test]
 fn positions_and_levels_are_those_of_exact_perspective() {
     let mut random = Random(1);
@@ -115,7 +116,7 @@ fn positions_and_levels_are_those_of_exact_perspective() {
                 }
             }
             let level = textured.level(&setup, depth, textured.axes.map(|axis| at(axis.plane)));
-            // Larger steps do not fit an accumulator.
+            // Skips planes with larger steps, which do not fit an accumulator.
             if steepest > f64::from(1 << 17) {
                 continue;
             }
@@ -176,7 +177,7 @@ fn a_floor_has_the_texels_that_rays_hit() {
             let found = [colour & 0xFF, colour >> 8].map(f64::from);
             for axis in 0..2 {
                 let exact = hit[axis] * 0.5 * 256.0;
-                // The distance from the found texel, which has width 1.
+                // The distance of the exact position from the texel found, which has the width 1.
                 let off = (exact - found[axis]).rem_euclid(256.0);
                 let off = if off > 128.0 {
                     256.0 - off
@@ -190,7 +191,7 @@ fn a_floor_has_the_texels_that_rays_hit() {
         }
         println!("{hits} pixels, {wrong} coordinates in the next texel, at most {worst:.4} off");
         assert!(hits > 50_000 && wrong < hits / 20, "{hits} {wrong}");
-        // A pixel near the horizon is many texels wide, and its centre is within 2^-7 pixel.
+        // A pixel near the horizon is many texels wide, and the position of its centre has an error of up to 2^-7 pixel.
         assert!(worst < 0.7, "{worst}");
     }
 }
@@ -266,7 +267,7 @@ fn blended_texels_keep_the_depth_behind_them() {
             blended += u32::from(code != 0);
         }
         assert!(blended > 10_000, "{blended}");
-        // Behind an opaque layer nothing is blended; at equal depths the later layer is drawn.
+        // A layer behind an opaque layer is not blended. At equal depths the later layer is drawn.
         let hidden = draw(&[(GREEN, blend), (RED, Blend::Opaque)]);
         assert_eq!(
             (hidden.colour, hidden.depth),
@@ -306,7 +307,7 @@ fn a_texture_replaces_those_of_the_mesh() {
     }
 }
 
-/// Full light does not change a colour, and no light gives black; bilinear filtering of equal texels gives their colour.
+/// Full light does not change a colour, and no light gives black. Bilinear filtering of equal texels gives the colour of the texels.
 #[test]
 fn colours_at_the_limits_are_exact() {
     for colour in (0..=u16::MAX).map(Rgb565) {
@@ -314,7 +315,7 @@ fn colours_at_the_limits_are_exact() {
         for rounding in [Rounding::Dithered, Rounding::Nearest] {
             let under = |light| lit(texel, flat_light(Rgb565::WHITE, light), rounding);
             assert_eq!((under([256; 3]), under([0; 3])), (texel, [0; 3]));
-            // A white texel has the colour of the light in every pixel.
+            // A white texel is shown in the colour of the light in every pixel.
             let white = Rgb565::WHITE.fractions();
             let found = lit(white, flat_light(colour, [256; 3]), rounding);
             for place in (0..16).map(|place| [place % 4, place / 4]) {
@@ -350,7 +351,7 @@ fn colours_at_the_limits_are_exact() {
     }
 }
 
-/// Between the centres of two texels the colour changes linearly, also across the sides of the texture.
+/// Between the centres of two texels the colour changes linearly, also across the borders of the texture.
 #[test]
 fn bilinear_colours_are_between_their_texels() {
     for wrap in Wrap::ALL {
@@ -372,7 +373,7 @@ fn bilinear_colours_are_between_their_texels() {
     }
 }
 
-/// Any coordinates, accumulators and positions give a colour without a panic, for textures of any size and kind.
+/// No coordinate, accumulator or position causes a panic, for textures of any size and kind.
 #[test]
 fn anything_has_a_colour() {
     let mut random = Random(11);

@@ -1,4 +1,4 @@
-//! Clipping to the six planes of the view volume, compared with a clipper in f64.
+//! Tests of clipping to the six planes of the view volume, compared with a clipper in f64.
 
 use glint_core::camera::Projection;
 use glint_core::fixed::U8_28;
@@ -91,7 +91,7 @@ fn vertices_against_f64() {
         let polygon = clip(&frame, triangle);
         let expected = reference(&frame, far, triangle.each_ref().map(|v| point(&frame, v)));
         most = most.max(polygon.vertices().len());
-        // A vertex closer to a plane than the rounding of f64 may be inside for only one of the clippers.
+        // If a vertex is closer to a plane than the rounding error of f64, the clippers may disagree whether the vertex is inside.
         if polygon.vertices().len() != expected.len() {
             unlike += 1;
             continue;
@@ -122,8 +122,8 @@ fn vertices_against_f64() {
     assert!(worst <= 1.0, "{worst}");
 }
 
-/// Two triangles that share an edge keep the same part of the edge, with the same end vertices: no pixel on the edge is lost or drawn
-/// twice.
+/// Clipping two triangles that share an edge leaves the same part of the edge, with the same end vertices, so no pixel on the edge is
+/// missing or drawn twice.
 ///
 /// The environment variable `GLINT_PAIRS` sets the number of pairs.
 #[test]
@@ -145,7 +145,7 @@ fn neighbours_have_no_cracks() {
             .map(|i| ends[i])
             .collect();
         let &[p, q] = distinct.as_slice() else {
-            // At most one point of the edge is inside.
+            // At most one point of the edge is inside the volume.
             assert!(distinct.len() < 2);
             continue;
         };
@@ -163,7 +163,7 @@ fn neighbours_have_no_cracks() {
     assert!(cracks == 0 && cut > pairs / 10);
 }
 
-/// A camera at the origin that looks along y; at distance 1 the left and the right side of its view volume are at ±0.9.
+/// A camera at the origin that looks along y. At the distance 1, the left and the right side of the view volume are at ±0.9.
 fn level_frame() -> MeshSetup {
     let camera = Camera {
         eye: [0.0; 3],

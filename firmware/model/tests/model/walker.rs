@@ -1,4 +1,4 @@
-//! Tests of the pixels that setup and walker cover, for triangles in screen coordinates.
+//! Tests of the pixels that the setup and the walker cover, for triangles in screen coordinates.
 
 use glint_core::colour::Rgb565;
 use glint_model::triangle::raster::{Coverage, draw};
@@ -8,7 +8,7 @@ use glint_model::{SIZES, ScreenVertex};
 use glint_vectors::triangles::{SIZE, at, random_triangle, set_up};
 use glint_vectors::{Picture, Random};
 
-/// Draws one triangle on a blank picture. Returns the map of covered pixels and the walker's counts.
+/// Draws one triangle on a blank picture. Returns which pixels are covered, and the walker's counts.
 fn alone(vertices: [ScreenVertex; 3], size: (u32, u32)) -> (Vec<bool>, Coverage) {
     let mut picture = Picture::blank(size);
     let coverage = set_up(vertices, size)
@@ -34,7 +34,7 @@ fn by_edges(vertices: [ScreenVertex; 3], (width, height): (u32, u32)) -> Vec<boo
                 let (right, down) = (i - i64::from(setup.start_column), j - top);
                 edge.start + right * i64::from(edge.step_x) + down * i64::from(edge.step_y) >= 0
             });
-            // The steps of an edge function are exact: stepping gives the directly computed values.
+            // Stepping an edge function is exact: it gives the directly computed values.
             assert_eq!(inside, directly(&oriented, i, j));
             covered[(j * i64::from(width) + i) as usize] = inside;
         }
@@ -126,7 +126,7 @@ fn top_left_torture_on_the_half_pixel_grid() {
                     let expected = directly(&oriented, x as i64, y as i64);
                     assert_eq!(covered[y * 320 + x], expected, "{triangle:?}");
                 }
-                // A triangle with two vertices exchanged, or with another first vertex, covers the same pixels.
+                // Exchanging two vertices, or choosing another first vertex, does not change the covered pixels.
                 assert_eq!(covered, alone([b, a, c].map(at), SIZE).0);
                 assert_eq!(covered, alone([b, c, a].map(at), SIZE).0);
                 tried += 1;
@@ -148,7 +148,7 @@ fn a_square_on_pixel_centres() {
             .map(|i| (i % 320 - 10, i / 320 - 10))
             .collect::<Vec<_>>()
     };
-    // Pixels on the diagonal from top left to bottom right belong to the triangle on the right of the diagonal.
+    // Pixels on the diagonal from top left to bottom right belong to the triangle to the right of the diagonal.
     assert_eq!(
         covered([a, b, c]),
         [

@@ -23,7 +23,7 @@ const ORDERS: [[usize; 3]; 6] = [
 fn the_upper_left_vertex_is_first_and_the_others_follow_clockwise() {
     let mut random = Random(1);
     for _ in 0..20_000 {
-        // Small coordinates, so that vertices are often equally high.
+        // The coordinates are small, so that vertices often have the same y.
         let vertices = [0; 3].map(|_| ScreenVertex {
             x: random.integer(-4, 4) as i32,
             y: random.integer(-4, 4) as i32,
@@ -38,7 +38,7 @@ fn the_upper_left_vertex_is_first_and_the_others_follow_clockwise() {
     }
 }
 
-/// The picture does not depend on the order of the vertices in the mesh, nor on the side to which a normal points.
+/// The picture depends neither on the order of the vertices in the mesh, nor on the signs of the normals.
 #[test]
 fn the_order_in_the_mesh_does_not_matter() {
     let mut random = Random(2);

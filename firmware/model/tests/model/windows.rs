@@ -1,4 +1,4 @@
-//! Windows of cameras that are off their axis, or whose pixels are not square: positions, rays and the sky, compared with f64.
+//! Tests of camera windows that are off the camera's axis, or whose pixels are not square: positions, rays and the sky, compared with f64.
 
 use glint_core::camera::{Lens, Projection, View};
 use glint_core::field::Field;
@@ -13,7 +13,7 @@ use glint_vectors::{Camera, Random, math::dot, math::world};
 
 use crate::{RADII, error};
 
-/// The window of a lens: half width and half height, and the middle along u and v.
+/// The window of a lens: half width, half height, and the position of the middle along u and v.
 fn window(lens: &Lens) -> ([f64; 2], [f64; 2]) {
     let half = [lens.half_width(), lens.half_height()];
     (half.map(U8_28::to_num), lens.middle().map(Q4_28::to_num))
@@ -36,7 +36,7 @@ fn random_view(random: &mut Random, projection: Projection, halves: [f64; 2], as
     camera.rounded().with_lens(lens.expect("in range"))
 }
 
-/// A direction or a place along the camera's axes.
+/// The components of a vector along the camera's axes.
 fn along(view: &View, place: [f64; 3]) -> [f64; 3] {
     [view.u(), view.v(), view.n()].map(|row| dot(row.map(Q2_23::to_num), place))
 }
@@ -52,7 +52,7 @@ fn places_against_f64() {
             let view = random_view(&mut random, projection, [0.1, 3.0], 3.0);
             let frame = match MeshSetup::new(&view, size.0, size.1, RADII[0]) {
                 Ok(frame) => frame,
-                // The middle of the picture is too far from the origin.
+                // The middle of the picture is too far from the world's origin.
                 Err(error) => {
                     let is_moved = view.eye_of_middle() != view.eye();
                     assert!(matches!(error, RenderError::Eye(_)) && is_moved);
@@ -92,7 +92,7 @@ fn places_against_f64() {
     }
 }
 
-/// The scale shift is the largest with which the rows of both axes fit 25 bits for every middle of the same size.
+/// The scale shift is the largest for which the rows of both axes fit 25 bits, for every middle at the same distance from the axis.
 #[test]
 fn rows_fit_their_width() {
     let mut random = Random(72);
@@ -171,7 +171,7 @@ fn rays_and_the_sky_against_f64() {
     assert!(worst[0] <= 1e-5 && worst[1] < 221.0 * 0.5f64.powi(23));
 }
 
-/// A field requires a window within 4 of the axis.
+/// A field requires a window whose sides are within 4 of the axis.
 #[test]
 fn windows_of_fields() {
     let field = Field::parse("box:1,1,1").expect("a field");
@@ -203,7 +203,8 @@ fn windows_of_fields() {
     }
 }
 
-/// The left half of a window, in a picture of the same size, shows the left half of the picture: positions are doubled.
+/// A window that is the left half of another window, in a picture of the same size, shows the left half of the other picture with doubled
+/// positions.
 #[test]
 fn halves_of_a_window() {
     let mut random = Random(74);

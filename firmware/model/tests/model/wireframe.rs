@@ -1,4 +1,4 @@
-//! Pictures of wireframe programs.
+//! Tests of pictures of wireframe programs.
 
 use glint_core::camera::View;
 use glint_core::fixed::{Q32_32, Turns};
@@ -44,7 +44,7 @@ fn draw(segments: &str, size: Size, keys: &[Key]) -> (Picture, WireframeStats) {
     (picture, stats)
 }
 
-/// The column and the row of each drawn pixel.
+/// Column and row of each drawn pixel.
 fn pixels(picture: &Picture, width: usize) -> Vec<[usize; 2]> {
     let drawn = picture.colour.iter().enumerate();
     drawn
@@ -75,7 +75,7 @@ fn keys_move_the_picture() {
         found.first().copied().unwrap()
     };
     let [x, y] = shifted(&[]);
-    // A pan of 0.0625 is 10 pixels in the view plane.
+    // A pan of 0.0625 is 10 pixels for a segment in the view plane.
     assert_eq!(shifted(&[Key::Up]), [x, y - 10]);
     assert_eq!(shifted(&[Key::Right, Key::Right]), [x + 20, y]);
     // A segment that a zoom moves in front of the view plane disappears.
