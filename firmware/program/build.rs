@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::{env, fs};
 
-/// Size of the board's main memory in MB, which `cargo xtask firmware --board` sets; by default the virtual board's.
+/// Size of the board's main memory in MB, which `cargo xtask firmware --board` sets. The default is that of the virtual board.
 const MAIN_RAM: &str = "GLINT_MAIN_RAM_MB";
 
 fn main() {
@@ -24,7 +24,7 @@ fn main() {
             .unwrap_or_else(|error| panic!("{}: {error}", from.display()));
     }
     println!("cargo::rustc-link-search={out}");
-    // A program in another package passes these arguments itself.
+    // The build script of a program in another package must pass these arguments itself.
     println!("cargo::rustc-link-arg-examples=-Tmemory.x");
     println!("cargo::rustc-link-arg-examples=-Tlink.x");
 }

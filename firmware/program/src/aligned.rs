@@ -1,6 +1,6 @@
-//! Files in a program's image, aligned for the engines.
+//! Alignment of files that are included in a program's image, for the engines.
 
-/// Bytes that begin at a multiple of 16 bytes, as the engines read meshes and textures.
+/// Bytes aligned to 16 bytes, which the engines require of meshes and textures.
 ///
 /// ```
 /// use glint_program::Aligned;

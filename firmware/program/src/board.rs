@@ -18,11 +18,11 @@ use heapless::{String, Vec};
 
 use crate::shapes::Shapes;
 
-/// Bytes of log text between two pictures. More is dropped.
+/// Maximum number of bytes of log text per picture. Further text is dropped.
 const LOG: usize = 1024;
-/// Received bytes between two pictures; further bytes wait for the next picture.
+/// Maximum number of received bytes per picture. Further bytes wait for the next picture.
 pub(crate) const RECEIVED: usize = 256;
-/// Samples of the motion sensor between two pictures: those of 64 ms. In a slower program the oldest are dropped.
+/// Maximum number of samples of the motion sensor per picture: those of 64 ms. If a picture takes longer, the oldest samples are dropped.
 const SAMPLES: usize = 64;
 
 /// A button of the board.
@@ -57,7 +57,7 @@ pub enum Button {
 /// use glint_program::core::fixed::Q32_32;
 /// use glint_program::Board;
 ///
-/// /// The camera at the origin that looks where the sensor does; `None` without a sensor.
+/// /// The camera at the origin that looks in the direction of the sensor; `None` without a sensor.
 /// fn look(board: &Board) -> Option<View> {
 ///     board.motion()?.view([Q32_32::ZERO; 3]).ok()
 /// }
@@ -69,7 +69,7 @@ pub enum Button {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Motion {
-    /// The rotation from the sensor's axes to the world's.
+    /// The rotation from the sensor's axes to the world's axes.
     pub attitude: Quaternion,
     /// The newest sample.
     pub sample: Sample,
@@ -103,7 +103,7 @@ impl Motion {
 /// use glint_program::core::camera::View;
 /// use glint_program::{Board, Hand};
 ///
-/// /// The camera to which a hand has moved; `None` without a hand.
+/// /// The camera at the position that a hand sets; `None` without a hand.
 /// fn steer(board: &mut Board) -> Option<View> {
 ///     board.watches_hand = true;
 ///     match board.hand()? {
@@ -130,10 +130,10 @@ impl Motion {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Hand {
-    /// The place on a sphere about the origin to which the hand has moved the camera: left and right are the azimuth, up and down the angle
-    /// from the z axis, nearer and farther the distance.
+    /// The position of the camera in spherical coordinates about the origin, set by the hand: left and right change the azimuth, up and
+    /// down the angle from the z axis, nearer and farther the distance.
     pub pose: Pose,
-    /// Whether a hand is seen; otherwise the pose is that of the last hand.
+    /// Whether the image sensor sees a hand. If not, `pose` is unchanged since the last hand.
     pub is_seen: bool,
 }
 
@@ -166,9 +166,9 @@ pub struct Hand {
 pub struct Board {
     /// Levels of the sixteen LEDs; bit 0 is LED 0.
     pub leds: u16,
-    /// Whether the image sensor is on, and looks for a [hand](Self::hand).
+    /// Whether the image sensor is turned on to look for a [hand](Self::hand).
     pub watches_hand: bool,
-    /// The lit segments of the eight digits. `None` shows the rate of drawing in pictures per second.
+    /// The lit segments of the eight digits. `None` shows the drawing rate in pictures per second.
     pub digits: Option<[u8; 8]>,
     defaults: Defaults,
     shapes: Shapes,
@@ -186,10 +186,10 @@ pub struct Board {
     log: String<LOG>,
 }
 
-/// What the machine reads for the next picture.
+/// The input of the board for the next picture.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Levels {
-    /// Time since the start.
+    /// Time since the start of the program.
     pub time: Duration,
     /// One bit for each pressed button.
     pub buttons: u8,
@@ -220,7 +220,7 @@ impl Board {
         }
     }
 
-    /// Takes a sample of the buttons, which may come more often than pictures.
+    /// Handles a sample of the buttons. Samples may be more frequent than pictures.
     pub(crate) fn sample_buttons(&mut self, time: Duration, buttons: u8) {
         // The time wraps after 49 days, which the debouncer can handle.
         self.pressed |= self.debouncer.sample(time.as_millis() as u32, buttons);
@@ -237,13 +237,13 @@ impl Board {
         self.time = levels.time;
     }
 
-    /// Takes a sample of the motion sensor.
+    /// Handles a sample of the motion sensor.
     pub(crate) fn add_sample(&mut self, motion: Motion) {
         self.motion = Some(motion);
         if self.samples.is_full() {
             self.samples.remove(0);
         }
-        // There is room for a sample.
+        // The list is not full, so the push does not fail.
         let _ = self.samples.push(motion.sample);
     }
 
@@ -257,7 +257,7 @@ impl Board {
         &mut self.received
     }
 
-    /// Ends the update for a picture: removes its input, and returns the log.
+    /// Ends the update for a picture: clears the input of the picture, and returns the log.
     pub(crate) fn end(&mut self) -> String<LOG> {
         self.pictures = self.pictures.wrapping_add(1);
         self.pressed = 0;
@@ -266,7 +266,7 @@ impl Board {
         core::mem::take(&mut self.log)
     }
 
-    /// The options of pictures that this board draws.
+    /// The default options of pictures on this board.
     pub(crate) const fn defaults(&self) -> Defaults {
         self.defaults
     }
@@ -309,7 +309,7 @@ impl Board {
     /// # impl Program for Blink {
     /// #     fn start(_: &mut Board) -> Self { Self(false) }
     /// fn update(&mut self, board: &mut Board) {
-    ///     // Eight pictures with, eight without.
+    ///     // Eight pictures on, eight pictures off.
     ///     self.0 = board.pictures() & 8 == 0;
     /// }
     /// #     fn draw<'p>(&'p self, _: &mut Picture<'p>) -> Result<(), PictureError> { Ok(()) }
@@ -344,7 +344,7 @@ impl Board {
         Turns((i128::from(per_second.to_bits()) * microseconds).div_euclid(1_000_000) as u32)
     }
 
-    /// Largest size of a picture.
+    /// Largest size of a picture on this board.
     ///
     /// ```
     /// # use glint_program::core::mesh::Mesh;
@@ -354,7 +354,7 @@ impl Board {
     /// # struct Quick { size: Size }
     /// # impl Program for Quick {
     /// fn start(board: &mut Board) -> Self {
-    ///     // A quarter of the pixels, where the board has more than the smallest size.
+    ///     // A quarter of the pixels, if the board supports more than the smallest size.
     ///     let half = Size::of(board.largest_size().width() / 2, board.largest_size().height() / 2);
     ///     Self { size: half.unwrap_or(Size::W320) }
     /// }
@@ -482,7 +482,7 @@ impl Board {
         self.hand.as_ref().filter(|_| self.watches_hand)
     }
 
-    /// Samples of the motion sensor since the previous picture, the oldest first; it sends 1,000 a second.
+    /// Samples of the motion sensor since the previous picture, the oldest first. The sensor sends 1,000 samples per second.
     ///
     /// ```
     /// # use glint_program::{Picture, PictureError, Program, host::Host};
@@ -492,7 +492,7 @@ impl Board {
     /// # impl Program for Steps {
     /// #     fn start(_: &mut Board) -> Self { Self(0) }
     /// fn update(&mut self, board: &mut Board) {
-    ///     // A shock is more than 2 g of 4,096 counts upwards.
+    ///     // A shock is an upward acceleration of more than 2 g; 1 g is 4,096 counts.
     ///     let shocks = board.samples().iter().filter(|sample| sample.accel[2] > 2 * 4096);
     ///     self.0 += shocks.count() as u32;
     /// }
@@ -540,8 +540,8 @@ impl Board {
         &self.received
     }
 
-    /// Writes a line to the serial line, after the time. A line beyond 1,024 bytes for a picture is dropped. The lines are sent after the
-    /// update, so a panic in the update loses them.
+    /// Writes a line of text to the serial line, with the time in front. Lines beyond 1,024 bytes per picture are dropped. The text is sent
+    /// after the update, so a panic in the update loses the text.
     ///
     /// ```
     /// # use glint_program::{Picture, PictureError, Program, host::Host};
@@ -605,7 +605,7 @@ impl Board {
         self.shapes.cube()
     }
 
-    /// A built-in mesh; the cube if its memory is used up, which does not occur.
+    /// A built-in mesh. The memory suffices for all of them; if it did not, this function would return the cube.
     ///
     /// ```
     /// # use glint_program::{Picture, PictureError, Program, host::Host};
@@ -628,7 +628,7 @@ impl Board {
     }
 }
 
-/// The segments of the two displays.
+/// The segments of both four-digit displays.
 pub(crate) fn digits(displays: [Display; 2]) -> [u8; 8] {
     let mut segments = [0; 8];
     segments.copy_from_slice(displays.map(|display| display.digits()).as_flattened());

@@ -1,4 +1,4 @@
-//! The drawn picture as a target of `embedded-graphics`.
+//! The drawn picture as a draw target of `embedded-graphics`.
 
 use core::convert::Infallible;
 use core::fmt;
@@ -13,7 +13,7 @@ use embedded_graphics::primitives::Rectangle;
 use embedded_graphics::text::{Baseline, Text};
 use glint_core::picture::Size;
 
-/// Lends the pixels of the drawn picture.
+/// Access to the pixels of the drawn picture.
 ///
 /// ```
 /// use glint_program::Pixels;
@@ -31,7 +31,8 @@ use glint_core::picture::Size;
 /// assert_eq!(memory.0, [0xffff, 0xffff, 0, 0xffff]);
 /// ```
 pub trait Pixels {
-    /// Colours in RGB565, row by row; empty while there is no picture. The next picture is then drawn on every pixel.
+    /// Colours in RGB565, row by row; empty while there is no picture. After this call, the renderer redraws every pixel for the next
+    /// picture.
     ///
     /// ```
     /// use glint_program::Pixels;
@@ -52,8 +53,8 @@ pub trait Pixels {
     fn pixels(&mut self) -> &mut [u16];
 }
 
-/// The picture that was just drawn, as a [`DrawTarget`] of the crate `embedded-graphics` in RGB565. The soft core writes the pixels, so
-/// it is for text and small shapes. Pixels outside of the picture are ignored.
+/// The picture that was just drawn, as a [`DrawTarget`] of the crate `embedded-graphics` in RGB565. The soft core writes the pixels, so use
+/// the canvas only for text and small shapes. Pixels outside of the picture are ignored.
 ///
 /// ```
 /// # use glint_program::{Board, Picture, PictureError, Program, host::Host};
@@ -84,7 +85,7 @@ pub struct Canvas<'c> {
 }
 
 impl<'c> Canvas<'c> {
-    /// The picture of this size that `source` lends.
+    /// A canvas on the picture of `source`, which has this size.
     ///
     /// ```
     /// # struct Memory(Vec<u16>);
@@ -102,7 +103,7 @@ impl<'c> Canvas<'c> {
         Self { source, size }
     }
 
-    /// Writes text from its upper left corner `place` on. Returns the place after the last character.
+    /// Writes text whose upper left corner is at `place`. Returns the position after the last character.
     ///
     /// ```
     /// # struct Memory(Vec<u16>);
@@ -136,7 +137,7 @@ impl<'c> Canvas<'c> {
     }
 }
 
-/// A line of text in progress.
+/// A writer that draws each piece of formatted text.
 struct Line<'l, 'c, 'f> {
     canvas: &'l mut Canvas<'c>,
     style: MonoTextStyle<'f, Rgb565>,

@@ -16,7 +16,8 @@ const RADIUS: u32 = 14_189;
 /// 1/√3 in Q2.14: the magnitude of each component of a corner's normal.
 const DIAGONAL: i16 = 9_459;
 
-/// For each of the three pairs of sides: the axis, the colour of its positive side and the colour of its negative side.
+/// For each of the three pairs of sides: the axis, the colour of the side at the positive end, and the colour of the side at the negative
+/// end.
 const SIDES: [(usize, u16, u16); 3] = [
     (0, 0xf9c7, 0x0733),
     (1, 0xfe60, 0x2b9f),
@@ -82,7 +83,7 @@ const fn corner_at(index: usize, size: i16) -> [i16; 3] {
     position
 }
 
-/// Writer of records to the bytes of the mesh.
+/// Writes records to the bytes of the mesh.
 struct Writer {
     bytes: [u8; LENGTH],
     at: usize,
@@ -99,16 +100,16 @@ impl Writer {
         self
     }
 
-    /// Appends the two triangles of a side of the cube, counter-clockwise seen from outside. The side is perpendicular to
-    /// `axis`, at its positive end if `plus` is true.
+    /// Appends the two triangles of a side of the cube, counter-clockwise seen from outside. The side is perpendicular to `axis`, at the
+    /// positive end if `plus` is true.
     const fn side(mut self, axis: usize, plus: bool, colour: u16) -> Self {
         let (base, b, c) = (
             (plus as usize) << axis,
             1 << ((axis + 1) % 3),
             1 << ((axis + 2) % 3),
         );
-        // The turn from axis b to axis c is counter-clockwise seen from the positive side, and clockwise from the negative side, so there
-        // b and c are exchanged.
+        // The rotation from axis b to axis c is counter-clockwise seen from the positive side, and clockwise seen from the negative side,
+        // for which b and c are therefore exchanged.
         let (b, c) = if plus { (b, c) } else { (c, b) };
         let mut normal = [0; 3];
         normal[axis] = if plus { ONE } else { -ONE };

@@ -31,13 +31,13 @@ impl Drawn {
         }
     }
 
-    /// Frame rate: the number of frames per second at this frame's drawing time.
+    /// The number of frames per second that this frame's drawing time allows.
     pub fn rate(&self, frequency: Frequency) -> u64 {
         u64::from(frequency.hertz()) / self.cycles.max(1)
     }
 }
 
-/// The renderer of a frame.
+/// Which renderer drew a frame.
 #[derive(Clone, Copy)]
 pub enum RenderedBy {
     /// The CPU, with the reason if the gateware could not draw the frame.
@@ -51,8 +51,8 @@ pub enum RenderedBy {
 pub enum DrawError {
     /// The CPU cannot draw the frame.
     Render(RenderError),
-    /// The gateware cannot draw the frame, for this reason or because the backend is the CPU, and this build does not include the CPU
-    /// backend.
+    /// This build does not include the CPU backend, and the gateware cannot draw the frame for the given reason, or the backend is set to
+    /// the CPU.
     NoCpu(Option<Fallback>),
 }
 

@@ -1,4 +1,4 @@
-//! Drawing of frames by the gateware: by the triangle engine, and by the raymarcher in the engine's raster pass.
+//! Drawing of frames by the gateware: by the triangle engine, and by the raymarcher in the triangle engine's raster pass.
 //!
 //! ```text
 //! renderer (with its parts lines: wireframes and edges of meshes, and repeat: benchmark loops)

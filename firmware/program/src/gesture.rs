@@ -21,7 +21,7 @@ use litex_pac::cpu;
 
 use crate::marker::Marker;
 
-/// Windows of Cr and Cb before a calibration: skin in lamplight or daylight.
+/// Windows of Cr and Cb before the first calibration, for skin in lamplight or daylight.
 const SKIN: [Window; 2] = [
     Window {
         lower: 137,
@@ -33,7 +33,7 @@ const SKIN: [Window; 2] = [
     },
 ];
 
-/// End of the last frame, in clock cycles; `None` after the main loop has processed it.
+/// Time of the end of the last frame, in clock cycles; `None` after the main loop has processed the frame.
 static FRAME: Mutex<Cell<Option<u64>>> = Mutex::new(Cell::new(None));
 
 /// Stores the time at which a frame has ended. Call this in the frame's interrupt.
@@ -49,7 +49,7 @@ pub struct Cycles {
     pub frames: u32,
     /// Number of cycles that the soft core has used for all frames, including interrupts.
     pub total: u64,
-    /// Number of cycles from the end of the last frame that moved the camera to the end of the drawing of its picture.
+    /// Number of cycles from the end of the last frame that moved the camera to the end of drawing the picture for this move.
     pub latency: u64,
     /// The largest latency so far.
     pub worst: u64,
@@ -57,10 +57,11 @@ pub struct Cycles {
 
 /// Time between two checks of an active image sensor.
 const CHECK_PERIOD: Duration = Duration::from_millis(50);
-/// Time to the next check after a failed set-up: set-ups of a damaged sensor block the main loop for at most a tenth of the time.
+/// Time to the next check after a failed set-up. With this pause, set-ups of a damaged sensor block the main loop for at most a tenth of
+/// the time.
 const PAUSE: Duration = Duration::from_millis(500);
 
-/// Periodic check of an active image sensor, which may be unplugged and lose its registers.
+/// Periodic check of an active image sensor, which loses its register values when it is unplugged.
 struct Watch {
     next_check: Deadline,
     /// Counts of whole and of dropped frames at the last check.
@@ -72,22 +73,22 @@ pub struct Gesture {
     engine: GestureEngine,
     clock: Clock,
     size: FrameSize,
-    /// The active image sensor, or its error; `None` while it is off.
+    /// The active image sensor, or the error of its set-up; `None` while the sensor is off.
     sensor: Option<Result<Model, SetUpError>>,
-    /// The periodic check; `None` unless `gesture on` was successful.
+    /// The periodic check; `None` unless [`start`](Self::start) was successful.
     watch: Option<Watch>,
     windows: [Window; 2],
     control: Control,
     /// The last position to which the camera was moved.
     steered: Option<Pose>,
-    /// End of the last frame that moved the camera, in clock cycles; `None` after its picture has been drawn.
+    /// Time of the end of the last frame that moved the camera, in clock cycles; `None` after the picture for this move has been drawn.
     waiting: Option<u64>,
     is_marked: bool,
     cycles: Cycles,
 }
 
 impl Gesture {
-    /// Makes gesture control with the image sensor off.
+    /// Creates gesture control with the image sensor turned off.
     pub fn new(mut engine: GestureEngine, clock: Clock) -> Self {
         engine::set_windows(&mut engine, SKIN);
         Self {
@@ -122,7 +123,7 @@ impl Gesture {
         started
     }
 
-    /// The active image sensor. If none is active, sets the sensor up, which takes about 50 ms, and turns it off again.
+    /// The active image sensor. If no sensor is active, sets the sensor up, which takes about 50 ms, and turns it off again.
     ///
     /// # Errors
     /// There is no image sensor, or it does not accept its set-up.
@@ -143,9 +144,9 @@ impl Gesture {
         });
     }
 
-    /// Checks whether the image sensor sends whole frames. If not, and if it has lost its registers, it was unplugged or lost power: it is
-    /// set up again as soon as it answers, and control continues from the camera's position. During the set-up, the gyroscope's samples
-    /// wait in their queue.
+    /// Checks whether the image sensor sends whole frames. A sensor that does not, and that has lost its register values, was unplugged or
+    /// lost power. Such a sensor is set up again as soon as it answers, and control continues from the camera's position. During the
+    /// set-up, the gyroscope's samples wait in a queue.
     #[cold]
     #[inline(never)]
     fn watch(&mut self) {
@@ -180,7 +181,7 @@ impl Gesture {
         self.schedule_check(pause);
     }
 
-    /// Turns the image sensor off; the camera stays.
+    /// Turns the image sensor off. The camera does not move.
     pub fn stop(&mut self) {
         self.engine.set_power(false);
         self.sensor = None;
@@ -189,7 +190,7 @@ impl Gesture {
         self.waiting = None;
     }
 
-    /// Processes the statistics of a frame that has ended; otherwise checks the image sensor periodically.
+    /// Processes the statistics of a frame that has ended. Without such a frame, checks the image sensor if a check is due.
     #[inline(never)]
     pub fn poll(&mut self) -> Turn {
         let Some(ended) = critical_section::with(|token| FRAME.borrow(token).take()) else {
@@ -197,7 +198,7 @@ impl Gesture {
             return Turn::Wait;
         };
         let start = cpu::cycles_low();
-        // Statistics that the next frame replaces during the reading are dropped: the next frame has its own interrupt.
+        // Statistics that the next frame replaces during the read are dropped, because the next frame raises its own interrupt.
         if let Some(statistics) = engine::statistics(&self.engine) {
             let before = self.control.pose();
             let time = self.clock.frequency().microseconds(ended);
@@ -222,7 +223,7 @@ impl Gesture {
         })
     }
 
-    /// Measures the latency after a picture was drawn for the last call of [`move_to`](Self::move_to).
+    /// Ends the latency measurement, because the picture for the last call of [`move_to`](Self::move_to) has been drawn.
     pub fn on_drawn(&mut self) {
         if self.steered == Some(self.control.pose())
             && let Some(ended) = self.waiting.take()
@@ -232,12 +233,12 @@ impl Gesture {
         }
     }
 
-    /// Ends the latency measurement if the camera's move is too small for another picture.
+    /// Drops the latency measurement, because the camera's move is too small to change the picture.
     pub const fn on_unchanged(&mut self) {
         self.waiting = None;
     }
 
-    /// The marker of the hand's position, if it is to be drawn.
+    /// The marker of the hand's position; `None` if no marker is to be drawn.
     pub fn marker(&self) -> Option<Marker> {
         let blob = self.seen().and_then(Result::ok);
         self.is_marked.then(|| {
@@ -250,7 +251,7 @@ impl Gesture {
         })
     }
 
-    /// Sets whether the hand's position is drawn in a corner of the picture.
+    /// Sets whether a marker of the hand's position is drawn in a corner of the picture.
     pub const fn set_marked(&mut self, is_marked: bool) {
         self.is_marked = is_marked;
     }
@@ -273,12 +274,12 @@ impl Gesture {
         enlarged + if is_colour { 3 } else { 1 }
     }
 
-    /// The words of the small picture, if its frame is complete.
+    /// The words of the small picture; `None` until the frame is complete.
     pub fn picture(&self) -> Option<impl Iterator<Item = u16> + Clone> {
         self.engine.picture()
     }
 
-    /// Finds the windows of the hand's colour from the small picture of colours; `None` if the picture's frame has not ended.
+    /// Finds the windows of the hand's colour in the small picture of colours; `None` until the picture's frame has ended.
     pub fn calibrate(&mut self) -> Option<Result<Calibrated, ColourError>> {
         let [columns, rows] = self.picture_size(true);
         let chroma = self.engine.picture()?.map(|colour| {
@@ -293,12 +294,12 @@ impl Gesture {
         Some(found)
     }
 
-    /// The engine.
+    /// The gesture engine.
     pub const fn engine(&self) -> &GestureEngine {
         &self.engine
     }
 
-    /// The active image sensor, or its error; `None` while it is off.
+    /// The active image sensor, or the error of its set-up; `None` while the sensor is off.
     pub const fn sensor(&self) -> Option<Result<Model, SetUpError>> {
         self.sensor
     }

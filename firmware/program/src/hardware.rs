@@ -32,7 +32,7 @@ static GLINT_BUILD_ID: u32 = BUILD_ID;
 
 /// Reason why the hardware cannot start.
 pub enum StartError {
-    /// The hardware was started before.
+    /// The hardware has already been started.
     Started,
     /// The gateware reports a clock frequency that the firmware does not support.
     Frequency(NotAFrequency),
@@ -50,7 +50,7 @@ pub enum StartError {
 impl fmt::Display for StartError {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Self::Started => f.write_str("the machine was started before"),
+            Self::Started => f.write_str("the machine has already been started"),
             Self::Frequency(error) => error.fmt(f),
             Self::MainRam { needed, found } => write!(
                 f,
@@ -71,17 +71,17 @@ pub struct Identity {
     pub firmware: u32,
     /// Build id of the gateware.
     pub gateware: u32,
-    /// Block enable bits of the gateware: one bit for each optional block that it has.
+    /// Block enable bits of the gateware: one bit for each optional block.
     pub blocks: u32,
 }
 
 impl Identity {
-    /// Whether the registers of the gateware are those for which the firmware was built.
+    /// Whether the firmware was built for the registers of this gateware.
     pub const fn matches(&self) -> bool {
         self.firmware == self.gateware
     }
 
-    /// Whether the gateware has the block.
+    /// Whether the gateware contains the block.
     pub const fn has(&self, block: Block) -> bool {
         self.blocks & block.bit() != 0
     }
@@ -97,9 +97,9 @@ pub struct Devices {
     pub leds: OutputPort<u16>,
     /// The displays of digits.
     pub digits: Digits,
-    /// Time until which the digits keep what they show, if any.
+    /// End of the self-test of the digits, during which their contents must not change; `None` without a self-test.
     pub tests_digits: Option<Deadline>,
-    /// The I2C bus of the sensor; `None` after the future that reads the sensor has taken it.
+    /// The I2C bus of the sensor; `None` after the future that reads the sensor has taken the bus.
     pub i2c: Option<I2c>,
 }
 
@@ -113,7 +113,7 @@ pub struct Hardware {
     pub devices: Option<Devices>,
     /// Gesture control; `None` without the gesture engine.
     pub gesture: Option<Gesture>,
-    /// The bytes of the flash; `None` if the gateware cannot read it.
+    /// The bytes of the flash; `None` if the gateware cannot read the flash.
     pub flash: Option<&'static [u8]>,
     /// Frame buffers and renderers.
     pub renderer: Renderer,
@@ -152,8 +152,7 @@ impl Hardware {
         memory::load_fast_code();
         let peripherals = Peripherals::take().ok_or(StartError::Started)?;
         let identity = Identity {
-            // SAFETY: the pointer refers to a static. The read is volatile, because tools change the value
-            // in the program's file.
+            // SAFETY: the pointer refers to a static. The read is volatile, because tools change the value in the file of the program.
             firmware: unsafe { (&raw const GLINT_BUILD_ID).read_volatile() },
             gateware: peripherals.identity.build_id().read(),
             blocks: peripherals.identity.blocks().read(),

@@ -1,5 +1,5 @@
-//! The same program on a host: without a window, drawn by the model, with scripted input. Its pictures are those of the engines, bit for
-//! bit.
+//! Runs the same program on a host, without a window, with scripted input. The model draws the pictures, which are bit-identical to the
+//! pictures of the engines.
 //!
 //! ```
 //! # use glint_program::{Board, Picture, PictureError, Program};
@@ -95,7 +95,7 @@ impl From<PictureError> for HostError {
 /// use glint_program::Board;
 /// use glint_program::host::Host;
 ///
-/// /// The speed that the first four switches set.
+/// /// The speed that the lowest four switches set.
 /// fn speed(board: &Board) -> u16 {
 ///     board.switches() & 0xf
 /// }
@@ -119,9 +119,9 @@ pub struct Host<P> {
 }
 
 impl<P: Program> Host<P> {
-    /// Starts the program on a board with the engines of the virtual board, in 640×360.
+    /// Starts the program on a board with the engines of the virtual board. Pictures have 640×360 pixels.
     ///
-    /// The memory of its meshes and edges stays until the end of the process.
+    /// The memory of the built-in meshes and of the edges is not freed until the end of the process.
     ///
     /// ```
     /// use glint_program::host::Host;
@@ -151,7 +151,7 @@ impl<P: Program> Host<P> {
         }
     }
 
-    /// Holds these buttons, and no others, for the next pictures.
+    /// Holds these buttons for the next pictures, and releases all others.
     ///
     /// ```
     /// # use glint_program::host::Host;
@@ -230,7 +230,7 @@ impl<P: Program> Host<P> {
         self.board.set_hand(hand);
     }
 
-    /// Sends bytes over the serial line. Bytes beyond 256 for a picture are dropped.
+    /// Sends bytes over the serial line. Bytes beyond 256 per picture are dropped.
     ///
     /// ```
     /// # use glint_program::{Picture, PictureError, Program, host::Host};
@@ -334,7 +334,7 @@ impl<P: Program> Host<P> {
         self.size
     }
 
-    /// The board, with its output.
+    /// The board, with the output of the program.
     ///
     /// ```
     /// # use glint_program::host::Host;
@@ -395,7 +395,7 @@ impl<P: Program> Host<P> {
         &self.log
     }
 
-    /// The last picture as a file in the portable pixmap format (PPM, 8 bits a channel).
+    /// The last picture as a file in the portable pixmap format (PPM, 8 bits per channel).
     ///
     /// ```
     /// # use glint_program::host::Host;
@@ -453,7 +453,7 @@ pub fn main<P: Program>() -> ExitCode {
     let count = count.map_or(Ok(60), |text| text.parse());
     let Ok(count) = count else {
         eprintln!(
-            "expected the number of pictures, and a file name for the last: PROGRAM [PICTURES [FILE.ppm]]"
+            "expected the number of pictures and a file name for the last picture: PROGRAM [PICTURES [FILE.ppm]]"
         );
         return ExitCode::from(2);
     };

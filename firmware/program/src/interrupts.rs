@@ -1,4 +1,4 @@
-//! The interrupt handler, and sleeping until the next interrupt.
+//! The interrupt handler, and a function that sleeps until the next interrupt.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
@@ -11,7 +11,7 @@ use crate::sensor;
 use crate::serial::UART;
 use crate::supervision;
 
-/// Parts of the SoC that this build supports.
+/// Parts of the SoC that are present, and that this build supports.
 pub struct Present {
     /// I2C and timer.
     pub devices: bool,
@@ -55,7 +55,7 @@ pub fn count() -> u32 {
     COUNT.load(Ordering::Relaxed)
 }
 
-/// Sleeps until the next interrupt, unless one has come since [`count`] returned `before`.
+/// Sleeps until the next interrupt, unless an interrupt has been handled since [`count`] returned `before`.
 pub fn sleep(before: u32) {
     // An interrupt handled between the comparison and the sleep would not end the sleep. Interrupts are therefore masked: a
     // pending interrupt ends the sleep and is handled afterwards.

@@ -1,8 +1,8 @@
 //! The library of programs for a Glint machine: games, instruments and demos on the soft core, drawn by the engines.
 //!
-//! A [`Program`] is a value with three functions: it starts, it is updated by the [`Board`]'s input, and it describes its next
-//! [`Picture`]. [`run!`] makes a binary of it: on the soft core the program has the machine for itself; on a host it draws by the model,
-//! without a window, for tests ([`host`]).
+//! A [`Program`] has three main functions: `start` creates it, `update` changes it by the [`Board`]'s input, and `draw` describes the next
+//! [`Picture`]. [`run!`] makes a binary of the program. On the soft core, the program has exclusive use of the machine. On a host, the
+//! model draws the pictures, without a window, for tests ([`host`]).
 //!
 //! ```
 //! use glint_program::{Board, Picture, PictureError, Program};
@@ -11,7 +11,7 @@
 //! use glint_program::core::matrix::Matrix;
 //! use glint_program::core::mesh::Mesh;
 //!
-//! /// A cube before a camera that moves around it.
+//! /// A cube, seen by a camera that moves around it.
 //! struct Cube {
 //!     mesh: Mesh<'static>,
 //!     azimuth: Turns,
@@ -23,7 +23,7 @@
 //!     }
 //!
 //!     fn update(&mut self, board: &mut Board) {
-//!         // A turn in four seconds.
+//!         // One turn in four seconds.
 //!         self.azimuth = board.turns(Q32_32::lit("0.25"));
 //!     }
 //!
@@ -46,8 +46,8 @@
 //! | [`core`], [`model`], [`scene`] | the crates whose types the interface uses |
 //! | [`host`] | the same program on a host |
 //!
-//! Most other modules exist on the soft core only, and are for programs that need more than this interface: `hardware` starts the
-//! machine, and `renderer` draws frames. The firmware with the console is such a program.
+//! Most other modules exist only on the soft core, for programs that need more than this interface: `hardware` starts the machine, and
+//! `renderer` draws frames. The firmware with the console is such a program.
 #![cfg_attr(target_arch = "riscv32", no_std)]
 #![deny(unsafe_code)]
 
@@ -107,7 +107,7 @@ pub use glint_scene as scene;
 pub use picture::{MAX_RECTANGLES, Picture, PictureError};
 pub use program::Program;
 
-/// Clock cycles of the soft core since reset, to measure a program's own code; on a host always 0.
+/// Clock cycles of the soft core since reset, for measurements of a program's own code; always 0 on a host.
 ///
 /// ```
 /// let start = glint_program::cycles();
@@ -123,7 +123,7 @@ pub fn cycles() -> u64 {
     0
 }
 
-/// Makes the binary of a [`Program`], which is given as a type.
+/// Defines the main function of a binary that runs a [`Program`]. The argument is the program's type.
 ///
 /// ```
 /// # use glint_program::{Board, Picture, PictureError, Program};

@@ -1,4 +1,4 @@
-//! Segments in space, drawn by the line engine in green on black: the wireframe simulator's programs, written by a program.
+//! Segments in space, which the line engine draws in green on black. They form a program of the wireframe simulator.
 
 use glint_core::wireframe::{Instruction, Program, ProgramError, Segment, Viewing, WORD_BYTES};
 
@@ -20,10 +20,10 @@ pub struct Lines<const N: usize> {
 }
 
 impl<const N: usize> Lines<N> {
-    /// Words other than segments.
+    /// Number of words that are not segments.
     const FIXED: usize = 4;
 
-    /// An empty list, seen by this eye through this window.
+    /// An empty list with these viewing parameters.
     ///
     /// ```
     /// use glint_program::core::fixed::Q5_11;
@@ -52,7 +52,7 @@ impl<const N: usize> Lines<N> {
             Instruction::Window(window),
             Instruction::End,
         ] {
-            // The list has room for more than four words.
+            // The list holds more than four words, so the push does not fail.
             let _ = words.push(instruction.encode());
         }
         Self { words }
@@ -76,7 +76,7 @@ impl<const N: usize> Lines<N> {
         self.put_last(Instruction::End);
     }
 
-    /// Adds a segment. Returns whether there was room for it.
+    /// Adds a segment. Returns `false` if the list is full.
     ///
     /// ```
     /// # use glint_program::core::{fixed::Q5_11, wireframe::{CUBE, Program}};
@@ -93,7 +93,7 @@ impl<const N: usize> Lines<N> {
             return false;
         }
         self.put_last(Instruction::Segment(segment));
-        // There is room for another word.
+        // The list is not full, so the push does not fail.
         let _ = self.words.push(Instruction::End.encode());
         true
     }
@@ -120,7 +120,7 @@ impl<const N: usize> Lines<N> {
     /// ```
     ///
     /// # Errors
-    /// [`ProgramError`] for an eye that is not before its view plane, or for a window without area.
+    /// [`ProgramError`] for an eye that is not in front of the view plane, or for a window without area.
     pub fn program(&self) -> Result<Program<'_>, ProgramError<'static>> {
         Program::new_checked(self.words.as_flattened())
     }

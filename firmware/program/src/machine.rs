@@ -1,4 +1,4 @@
-//! The loop of a program on the soft core.
+//! The main loop of a program on the soft core.
 
 use core::future::pending;
 use core::pin::pin;
@@ -27,11 +27,11 @@ use crate::serial::UART;
 use crate::shapes::Shapes;
 use crate::supervision;
 
-/// Longest time to wait for a serial line that accepts no text; then the text is dropped.
+/// Longest time to wait for a serial line that accepts no text. After this time the text is dropped.
 const SEND_TIMEOUT: Duration = Duration::from_millis(500);
 
-/// Runs the program `P`. A program that cannot start, or whose picture cannot be drawn, ends with its error on the serial line, and restarts
-/// on Enter.
+/// Runs the program `P`. If the program cannot start, or a picture cannot be drawn, prints the error on the serial line, and restarts on
+/// Enter.
 pub fn run<P: Program>() -> ! {
     let hardware = match Hardware::start() {
         Ok(hardware) => hardware,
@@ -54,7 +54,7 @@ pub fn run<P: Program>() -> ! {
     };
     let shapes = match Shapes::new(spare.shapes) {
         Ok(shapes) => shapes,
-        Err(_) => panic::report(format_args!("cannot start: the built-in cube")),
+        Err(_) => panic::report(format_args!("cannot start: the built-in cube is invalid")),
     };
     let mut inputs = Inputs {
         devices,
@@ -106,7 +106,7 @@ struct Inputs {
     gesture: Option<Gesture>,
     imu: Imu,
     clock: Clock,
-    /// Clock cycles since reset at the start of the program.
+    /// Time of the program's start, in clock cycles since reset.
     start: u64,
 }
 
@@ -124,7 +124,7 @@ impl Inputs {
         let received = board.received_mut();
         let mut byte = [0];
         while !received.is_full() && UART.receive(&mut byte) > 0 {
-            // There is room for a byte.
+            // The list is not full, so the push does not fail.
             let _ = received.push(byte[0]);
         }
         board.begin(Levels {
@@ -134,8 +134,8 @@ impl Inputs {
         });
     }
 
-    /// Turns the image sensor on or off, if the program has changed its wish. A sensor that does not answer at first is looked for again
-    /// only after the program has turned it off; one that is unplugged later is found again.
+    /// Turns the image sensor on or off when the program requests a change. If no sensor answers when it is turned on, the next attempt is
+    /// after the program has turned the sensor off. A sensor that is unplugged later is found again.
     fn switch_image_sensor(&mut self, is_on: bool) {
         let Some(gesture) = self.gesture.as_mut().filter(|_| GESTURE.is_built) else {
             return;
@@ -150,7 +150,7 @@ impl Inputs {
         }
     }
 
-    /// Reads what must be read more often than once a picture: the buttons, the samples of the motion sensor, and the hand.
+    /// Reads the inputs that must be read more often than once per picture: the buttons, the samples of the motion sensor, and the hand.
     fn poll(&mut self, board: &mut Board) {
         // Drawing by the soft core, which calls this function, may take long.
         supervision::on_picture();
@@ -178,7 +178,7 @@ impl Inputs {
     }
 }
 
-/// Shows the output of the program. `rate` is the number of pictures a second.
+/// Shows the output of the program. `rate` is the number of pictures per second.
 fn show(board: &Board, devices: &mut Devices, rate: u64) {
     devices.leds.set(board.leds);
     let rate = || digits([Display::number(rate), Display::default()]);
@@ -204,7 +204,7 @@ fn draw<P: Program>(
             Some(drawn) => break drawn?,
             None => {
                 inputs.poll(board);
-                // Between two parts of the projection of lines the engine is idle, so no interrupt comes.
+                // While the CPU projects lines in several steps, the engine is idle and raises no interrupt.
                 if !renderer.is_ready() {
                     interrupts::sleep(before);
                 }
@@ -250,7 +250,7 @@ impl core::fmt::Display for Error {
     }
 }
 
-/// Notes on pictures for the user.
+/// State of the note to the user about slow drawing.
 #[derive(Default)]
 struct Notes {
     /// Whether the note was printed.

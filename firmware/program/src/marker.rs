@@ -16,17 +16,17 @@ const PARTS: u32 = 8;
 /// The marker of the hand's position in a frame of the image sensor.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Marker {
-    /// Coordinates x and y of the hand's centre in 1/256 of the frame, if there is a hand.
+    /// Coordinates x and y of the hand's centre in 1/256 of the frame; `None` without a hand.
     place: Option<[u8; 2]>,
     steers: bool,
 }
 
 impl Marker {
-    /// Makes the marker for a hand with this centre in a frame of `size` pixels; `steers` states whether the hand steers the camera.
+    /// Creates the marker for a hand with this centre in a frame of `size` pixels; `steers` states whether the hand steers the camera.
     pub fn new(centre: Option<[U20_12; 2]>, size: [u16; 2], steers: bool) -> Self {
         let part = |axis: usize, centre: [U20_12; 2]| {
             let place = centre[axis].to_num::<u32>();
-            // The centre lies in the frame.
+            // The centre is in the frame, so the quotient is below 256.
             ((place << 8) / u32::from(size[axis].max(1))) as u8
         };
         Self {

@@ -9,13 +9,13 @@ use glint_model::Projected;
 use litex_pac::cpu;
 use litex_pac::memories::MAIN_RAM;
 
-/// All windows of main memory. `take` lends each of them only once.
+/// All windows of main memory. `take` returns them only once.
 pub struct Memory {
     /// Two frame buffers: colours in RGB565, one per pixel.
     pub frames: [&'static mut [u16]; 2],
     /// The picture of the right eye: colours in RGB565, one per pixel.
     pub eye: &'static mut [u16],
-    /// Samples of a picture with four of them a pixel, drawn by the CPU backend: colours in RGB565.
+    /// Samples of a picture with four samples per pixel that the CPU backend draws: colours in RGB565.
     pub samples: &'static mut [u16],
     /// Depth codes, one per pixel or sample.
     pub depth: &'static mut [u32],
@@ -31,7 +31,7 @@ pub struct Memory {
     pub shapes: &'static mut [u8],
     /// Memory for uploaded meshes and programs, and the staging memory.
     pub uploads: &'static mut [u8],
-    /// Memory for the descriptors and band lists that pass from the triangle engine's geometry pass to its raster pass.
+    /// Memory for the descriptors and band lists that the triangle engine's geometry pass writes and its raster pass reads.
     pub lists: &'static mut [u32],
 }
 
@@ -76,8 +76,8 @@ pub fn size() -> u32 {
     end.addr() as u32 - MAIN_RAM.base
 }
 
-/// Expands to a slice of a window of memory. The arguments are the linker symbols of the window's first byte and of its size in bytes, and
-/// the element type.
+/// Expands to a slice of a window of memory. The arguments are the linker symbol of the window's first byte, the linker symbol of the
+/// window's size in bytes, and the element type.
 macro_rules! window {
     ($start:ident, $size:ident, $element:ty) => {{
         let bytes = (&raw const $size).addr();
@@ -118,7 +118,7 @@ impl Memory {
     }
 }
 
-/// Copies the fast code, which memory.x selects, to the SRAM. Fast code must not run before this call. Every SoC has the SRAM, because the
+/// Copies the fast code, which memory.x selects, to the SRAM. Fast code must not run before this call. Every SoC has this SRAM, because the
 /// BIOS needs it.
 pub fn load_fast_code() {
     let size = (&raw const _fast_size).addr();

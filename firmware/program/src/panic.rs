@@ -10,7 +10,7 @@ use riscv_rt::TrapFrame;
 
 use crate::serial::UART;
 
-/// The handler of all exceptions of the CPU. No exception is expected.
+/// The handler of all CPU exceptions. All of them are faults of the program.
 #[unsafe(export_name = "ExceptionHandler")]
 extern "C" fn exception(frame: &TrapFrame) -> ! {
     let code = mcause::read().code();

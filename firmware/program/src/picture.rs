@@ -56,13 +56,13 @@ pub enum PictureError {
     Meshes,
     /// More rectangles than [`MAX_RECTANGLES`].
     Rectangles,
-    /// A picture of lines, or of a mesh's edges, has another mesh or a field; or a picture with a field has several meshes.
+    /// A picture of lines, or of a mesh's edges, also has a mesh or a field; or a picture with a field has several meshes.
     Subjects,
     /// The camera is out of range.
     View(ViewError),
     /// A model matrix is out of range.
     Matrix(MatrixError),
-    /// The lines have no eye before a view plane with a window.
+    /// The viewing parameters of the lines are invalid.
     Lines(ProgramError<'static>),
 }
 
@@ -74,7 +74,7 @@ impl fmt::Display for PictureError {
                 write!(f, "expected at most {MAX_RECTANGLES} rectangles in a picture")
             }
             Self::Subjects => f.write_str(
-                "subjects of a picture: expected meshes, a field with at most one mesh, the edges of a mesh, or lines",
+                "subjects: expected meshes, a field with at most one mesh, the edges of a mesh, or lines",
             ),
             Self::View(error) => write!(f, "camera: {error}"),
             Self::Matrix(error) => error.fmt(f),
@@ -104,9 +104,9 @@ impl From<ProgramError<'static>> for PictureError {
     }
 }
 
-/// The part of a picture that excludes others.
+/// The subject of a picture; subjects exclude each other.
 enum Main<'p> {
-    /// The meshes alone.
+    /// Only meshes.
     Meshes,
     /// A field, with at most one mesh in it.
     Field(&'p Field, Quality),
@@ -116,10 +116,10 @@ enum Main<'p> {
     Lines(WireframeSubject<'p>),
 }
 
-/// The description of a picture: camera, light, and the things that it shows.
+/// The description of a picture: camera, light, and what the picture shows.
 ///
 /// A new picture has the board's largest size. It has four samples a pixel if the gateware draws them. The light is white and comes from
-/// the camera. Meshes stand before a grey gradient.
+/// the camera. The background of meshes is a grey gradient.
 ///
 /// ```
 /// use glint_program::core::fixed::{Q8_24, Q32_32, Turns, U4_28};
@@ -153,11 +153,11 @@ enum Main<'p> {
 /// # Ok::<(), glint_program::host::HostError>(())
 /// ```
 pub struct Picture<'p> {
-    /// The camera. Lines have their own.
+    /// The camera. Not used for lines, which have their own viewing parameters.
     pub view: View,
     /// Width and height. A smaller picture is enlarged to the screen.
     pub size: Size,
-    /// Samples of a pixel.
+    /// Number of samples per pixel.
     pub samples: Samples,
     /// Lights, background and fog, and the material of a field.
     pub appearance: Appearance,
@@ -166,7 +166,7 @@ pub struct Picture<'p> {
     main: Main<'p>,
     meshes: Vec<Object<'p>, MAX_OBJECTS>,
     rectangles: Vec<Rectangle<'p>, MAX_RECTANGLES>,
-    /// The background of meshes if the appearance has none.
+    /// The background of meshes if the appearance has no background.
     background: Background,
 }
 
@@ -189,8 +189,8 @@ impl<'p> Picture<'p> {
         })
     }
 
-    /// Adds a mesh at a place in the world. The result has its further options: a colour in place of its own, shading, culling. At equal
-    /// depths a later mesh covers an earlier one. A mesh in a [field](Self::field) stands at the origin; its matrix is not used.
+    /// Adds a mesh with this model matrix. Set further options in the result, such as a replacement colour, shading and culling. At equal
+    /// depths a later mesh hides an earlier mesh. A mesh in a [field](Self::field) is at the origin, and the matrix is not used.
     ///
     /// ```
     /// # use glint_program::core::mesh::Mesh;
@@ -290,7 +290,7 @@ impl<'p> Picture<'p> {
         self.set(Main::Edges(MeshSubject::new(mesh), edges))
     }
 
-    /// Shows lines, moved to a pose.
+    /// Shows lines, transformed by a pose.
     ///
     /// ```
     /// # use glint_program::{Board, Program, host::Host};

@@ -4,13 +4,13 @@ use crate::board::Board;
 use crate::canvas::Canvas;
 use crate::picture::{Picture, PictureError};
 
-/// A program. For each picture [`update`](Self::update), [`draw`](Self::draw) and [`paint`](Self::paint) are called in this order; the
+/// A program. For each picture, [`update`](Self::update), [`draw`](Self::draw) and [`paint`](Self::paint) are called in this order. The
 /// picture is then shown from the next vertical blanking on.
 ///
 /// ```
 /// use glint_program::{Board, Picture, PictureError, Program};
 ///
-/// /// A lit LED that moves on twice a second, before the default background.
+/// /// A lit LED that moves to the next position twice per second, with the default background on the screen.
 /// struct Runner;
 ///
 /// impl Program for Runner {
@@ -32,7 +32,7 @@ use crate::picture::{Picture, PictureError};
 /// # Ok::<(), glint_program::host::HostError>(())
 /// ```
 pub trait Program: Sized {
-    /// The program after reset.
+    /// Creates the program after reset.
     ///
     /// ```
     /// # use glint_program::core::{mesh::Mesh, shape::Shape};
@@ -55,7 +55,7 @@ pub trait Program: Sized {
     /// ```
     fn start(board: &mut Board) -> Self;
 
-    /// Moves the program to the time of its next picture, by the board's input.
+    /// Advances the program to the time of the next picture, using the board's input.
     ///
     /// ```
     /// # use glint_program::core::fixed::Q32_32;
@@ -65,7 +65,7 @@ pub trait Program: Sized {
     /// #     fn start(_: &mut Board) -> Self { Self { place: Q32_32::ZERO } }
     /// fn update(&mut self, board: &mut Board) {
     ///     if board.is_held(Button::Right) {
-    ///         // Half a world unit a second.
+    ///         // Half a world unit per second.
     ///         self.place += Q32_32::from_num(board.step().as_micros() as u32) / 2_000_000;
     ///     }
     /// }
@@ -73,7 +73,7 @@ pub trait Program: Sized {
     /// # }
     /// let mut host = Host::<Car>::start();
     /// host.hold(&[Button::Right]);
-    /// host.run(121)?; // The first picture has no step.
+    /// host.run(121)?; // The step of the first picture is 0.
     /// assert_eq!(host.program().place.round(), 1);
     /// # Ok::<(), glint_program::host::HostError>(())
     /// ```
@@ -109,7 +109,7 @@ pub trait Program: Sized {
     /// [`PictureError`] stops the program, with the error on the console.
     fn draw<'p>(&'p self, picture: &mut Picture<'p>) -> Result<(), PictureError>;
 
-    /// Paints text and flat shapes on the picture that the engines have drawn. By default nothing.
+    /// Draws text and flat shapes on the picture that the engines have drawn. Draws nothing by default.
     ///
     /// ```
     /// # use glint_program::{Board, Canvas, Picture, PictureError, Program, host::Host};

@@ -15,15 +15,15 @@ use crate::gateware::{self, Cpu, Fallback, GatewareRenderer, Output, RightEye};
 use crate::memory::Scratch;
 use crate::soft_core::SoftCore;
 
-/// The renderers of gateware and CPU, and their memory.
+/// The gateware renderer and the CPU renderer, and the memory of both.
 pub struct Renderer {
     /// Two frame buffers, one of which is shown.
     pub display: Display,
-    /// Samples of a frame with four of them a pixel that the CPU draws.
+    /// Samples of a frame with four samples per pixel that the CPU draws.
     pub samples: &'static mut [u16],
     /// Depth codes of the last frame that was drawn with depth codes in memory, one per pixel or sample.
     pub depth: &'static mut [u32],
-    /// The right eye's picture of a stereo picture that is being drawn.
+    /// The right eye's part of a stereo picture that is being drawn.
     pub right: RightEye,
     /// Memory for projected vertices.
     pub scratch: Scratch,
@@ -36,9 +36,9 @@ pub struct Renderer {
 }
 
 impl Renderer {
-    /// Draws `frame` into the frame buffer that [`show`](Self::show) shows. Returns `None` while the gateware draws, and while the frame
-    /// buffer to draw into is still on the screen; until then, the frame must not change. Drawing by the CPU is slow and calls `progress`
-    /// at short intervals.
+    /// Draws `frame` into the frame buffer that [`show`](Self::show) will show. Returns `None` while the gateware draws, or while this
+    /// frame buffer is still on the screen; the frame must not change until the function returns a result. Drawing by the CPU is slow, and
+    /// calls `progress` at short intervals.
     pub fn draw(
         &mut self,
         frame: &Frame,
@@ -73,7 +73,7 @@ impl Renderer {
         )
     }
 
-    /// The frame that was just drawn, for the CPU to write on; `None` while its buffer is still on the screen.
+    /// The frame that was just drawn, for changes by the CPU; `None` while the frame's buffer is still on the screen.
     pub fn drawn_frame(&mut self) -> Option<&mut [u16]> {
         let back = self.display.back()?;
         if let Some(gateware) = &mut self.gateware {
@@ -87,7 +87,7 @@ impl Renderer {
         self.display.show(size.width());
     }
 
-    /// The options of the start scene: those of the gateware in the largest size, if it exists.
+    /// The options of the start scene: the largest size, and the options that the gateware supports, if there is a gateware renderer.
     pub fn defaults(&self) -> Defaults {
         let Some(gateware) = &self.gateware else {
             return Defaults::SOFT_CORE;
@@ -105,7 +105,7 @@ impl Renderer {
         self.display.has_size(size.pixels()) && size.pixel_count() <= self.right.colour.len()
     }
 
-    /// Drops a frame that waits for the next vertical blanking, so that another frame can be drawn.
+    /// Drops a frame that waits for the next vertical blanking, so that another frame can be drawn into its buffer.
     pub fn drop_pending(&mut self) {
         if !self.is_busy() {
             self.display.withdraw();
@@ -126,13 +126,13 @@ impl Renderer {
             .is_some_and(GatewareRenderer::is_ready)
     }
 
-    /// Whether [`draw`](Self::draw) has work while the gateware draws.
+    /// Whether [`draw`](Self::draw) can continue while the gateware draws.
     pub fn is_due(&self) -> bool {
         self.gateware.as_ref().is_some_and(GatewareRenderer::is_due)
     }
 
-    /// Draws a frame by the gateware. `None` means that the frame is not complete, `Err` that the CPU must draw the frame. The error has
-    /// no reason if the backend is the CPU or the SoC has no triangle engine.
+    /// Draws a frame by the gateware. `None` means that the frame is not complete, and `Err` that the CPU must draw the frame. The error
+    /// contains no reason if the backend is the CPU, or if the SoC has no triangle engine.
     fn draw_by_gateware(
         &mut self,
         frame: &Frame,
@@ -190,7 +190,7 @@ impl Renderer {
         };
         let start = cpu::cycles();
         let stats = match eyes {
-            // The left eye comes last, so that the depth codes are the left eye's.
+            // The left eye is drawn last, so that the depth codes in memory are those of the left eye.
             Some(eyes) => draw(&eyes.right, right, progress).and_then(|of_right| {
                 let of_left = draw(&eyes.left, back, progress)?;
                 self.right.join(eyes, back, progress);
@@ -220,8 +220,8 @@ impl Renderer {
         })
     }
 
-    /// Draws `frame` by the gateware without showing it, waits for its end, and returns the CRC-32 of its colours. Returns `None` if the
-    /// gateware has no triangle engine, or while no frame buffer is free.
+    /// Draws `frame` by the gateware without showing it, waits until the frame is complete, and returns the CRC-32 of its colours. Returns
+    /// `None` if the gateware has no triangle engine, or while no frame buffer is free.
     pub fn checksum(&mut self, frame: &Frame) -> Option<Result<u32, Fallback>> {
         self.off_screen(|gateware, right, output, cpu| {
             let eyes = frame.eyes()?;

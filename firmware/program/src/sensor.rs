@@ -1,7 +1,7 @@
 //! The sensor's stream: a future that is polled in interrupts, and the queue of its events for the main loop.
 //!
-//! The end of a transfer, of a batch of samples or of a pause raises an interrupt, whose handler polls the stream.
-//! Samples are therefore read on time, and wait in the queue, even while the main program is busy.
+//! The end of a transfer, of a batch of samples or of a pause raises an interrupt, whose handler polls the stream. Samples are therefore
+//! read on time even while the main program is busy, and wait in the queue.
 
 use core::cell::{Cell, RefCell};
 use core::mem;
@@ -32,7 +32,8 @@ enum Event {
     Error(SensorError),
 }
 
-/// Capacity of the queue of events: one second of samples, the longest turn of a task, such as the check of an uploaded mesh.
+/// Capacity of the queue of events: the samples of one second, because a single turn of a task, such as the check of an uploaded mesh, can
+/// take that long.
 const QUEUE: usize = 1024;
 
 /// The future that reads the sensor and never ends.
@@ -43,7 +44,7 @@ unsafe impl Send for Stream {}
 
 static STREAM: Mutex<RefCell<Option<Stream>>> = Mutex::new(RefCell::new(None));
 static EVENTS: Mutex<RefCell<Deque<Event, QUEUE>>> = Mutex::new(RefCell::new(Deque::new()));
-/// Clock cycles spent by the stream, and by the processing of its samples.
+/// Clock cycles spent by the stream, and clock cycles spent by the processing of its samples.
 static CYCLES: Mutex<Cell<[u64; 2]>> = Mutex::new(Cell::new([0; 2]));
 
 /// The receiver of the stream's events, which puts them into the queue.
@@ -52,7 +53,7 @@ pub struct Inbox;
 impl Inbox {
     fn push(event: Event) {
         critical_section::with(|token| {
-            // If the queue is full, the event is dropped. The gap between the time stamps of the samples reveals this.
+            // If the queue is full, the event is dropped. The receiver detects the loss by the gap between the time stamps of the samples.
             let _ = EVENTS.borrow_ref_mut(token).push_back(event);
         });
     }
@@ -117,7 +118,7 @@ fn count(which: usize, start: u32) {
     });
 }
 
-/// Clock cycles spent by the stream, and by the processing of its samples, since reset, including interrupts.
+/// Clock cycles since reset spent by the stream, and those spent by the processing of its samples, both including interrupts.
 pub fn cycles() -> [u64; 2] {
     critical_section::with(|token| CYCLES.borrow(token).get())
 }

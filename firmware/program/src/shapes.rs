@@ -9,7 +9,7 @@ use glint_scene::CUBE;
 
 use crate::cube;
 
-/// The built-in meshes, and memory for shapes that have not been made.
+/// The built-in meshes that have been made, and the memory for the others.
 ///
 /// ```
 /// # let memory = vec![0; 6 * glint_program::core::shape::MAX_BYTES].leak();
@@ -106,7 +106,7 @@ impl Shapes {
         *self.shapes.get(shape as usize)?
     }
 
-    /// A shape, made on first use; `None` if its memory is too small, which the sizes of the memory windows exclude.
+    /// A shape, made on first use; `None` if the memory is too small, which the sizes of the memory windows exclude.
     ///
     /// ```
     /// # let memory = vec![0; 6 * glint_program::core::shape::MAX_BYTES].leak();

@@ -1,4 +1,4 @@
-//! Drawing of frames by the model: on the soft core in place of the gateware, and on a host.
+//! Drawing of frames by the model, on the soft core in place of the gateware, or on a host.
 
 use glint_core::feature::EDGES;
 use glint_core::picture::Samples;
@@ -7,9 +7,9 @@ use glint_model::{Frame, FrameBuffer, FrameStats, Projected, RenderError, Subjec
 
 /// The memory in which the CPU draws frames.
 pub struct SoftCore<'m> {
-    /// Samples of a picture with four of them a pixel, for the largest part that is drawn at once.
+    /// Samples of a picture with four samples per pixel, for the largest part that is drawn at once.
     pub samples: &'m mut [u16],
-    /// Depth codes of that part, or of a picture.
+    /// Depth codes of the samples in this part, or of the pixels in a picture.
     pub depth: &'m mut [u32],
     /// Projected vertices: [`Frame::scratch_vertices`] of them.
     pub scratch: &'m mut [Projected],
@@ -64,7 +64,7 @@ impl SoftCore<'_> {
         if EDGES.is_built
             && let Subject::Edges(subject, _) = &frame.subject
         {
-            // Comes first, because it rejects a mesh with too many edges.
+            // The list is made first, because a mesh with too many edges is an error, and nothing may then be drawn.
             self.edges.make(&subject.mesh, progress)?;
         }
         let mut stats = frame.draw(&constants, buffer, self.scratch, progress)?;

@@ -1,5 +1,5 @@
-//! Supervision of a program: at each vertical blanking, an endless loop and a stack that grows without bound are found. They end the
-//! program with a message, as a panic does.
+//! Supervision of a program: each vertical blanking checks for an endless loop and for a stack overflow. Both end the program with a
+//! message, as a panic does.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
@@ -7,13 +7,13 @@ use riscv::register::mepc;
 
 use crate::panic;
 
-/// Vertical blankings without a picture after which a program counts as looping: ten seconds.
+/// Number of vertical blankings without a picture after which a program is in an endless loop: ten seconds.
 const LONGEST: u32 = 600;
-/// Most bytes of the stack that a program may use; where the program leaves less than twice as much, half of that. A recursion must fill the
-/// rest between two vertical blankings to escape; so can large arrays that are never written.
+/// Maximum number of bytes of the stack that a program may use, or half of the memory that is free for the stack, if that is less. An
+/// overflow is missed only if it occurs between two vertical blankings, or skips the check with large arrays that are never written.
 const STACK: usize = 1 << 20;
 
-/// Vertical blankings since the last picture, from 1; 0 before supervision starts.
+/// Number of vertical blankings since the last picture, plus 1; 0 before supervision starts.
 static BLANKINGS: AtomicU32 = AtomicU32::new(0);
 
 unsafe extern "C" {

@@ -307,7 +307,7 @@ impl Build {
         if !scene.needs().depths {
             let show = format!("scene {}", scene.name());
             let commands = [&show, "size 320 180", "aa 1", "render depth"];
-            self.refuses("virtual", &commands, "this gateware has no depths")?;
+            self.refuses("virtual", &commands, "this gateware has no depth buffer")?;
         }
         Ok(())
     }

@@ -13,19 +13,19 @@ use glint_model::{Stats, WireframeStats};
 
 use super::fallback::Fallback;
 
-/// Capacity of the memory of one frame. The CPU draws frames that need more.
+/// Capacity of the memory of one frame. The CPU draws frames that need more memory.
 #[derive(Clone, Copy)]
 pub struct Capacity {
     /// Largest number of exceptions (triangles that need clipping) of a frame, and of descriptors without
     /// optional parts in a set. With optional parts, fewer descriptors fit.
     descriptors: usize,
-    /// Number of 32-bit words of a set of band lists, including the table of their lengths.
+    /// Number of 32-bit words of a set of band lists, including the table of list lengths.
     list_words: usize,
 }
 
 impl Capacity {
-    /// The capacity for each of two frames in `words` 32-bit words; `None` if it is too small. A frame has two sets of lists, each an
-    /// eighth to a sixteenth of the memory.
+    /// The capacity for each of two frames in `words` 32-bit words; `None` if this memory is too small. A frame has two sets of lists; each
+    /// set takes a sixteenth to an eighth of the memory.
     pub fn of(words: usize) -> Option<Self> {
         let list_words = 1 << (words / 8).checked_ilog2()?;
         let descriptors = 1 << (words / 96).checked_ilog2()?;
@@ -35,7 +35,7 @@ impl Capacity {
         })
     }
 
-    /// Number of 32-bit words for the descriptors of a set.
+    /// Number of 32-bit words for the descriptors of one set.
     const fn descriptor_words(self) -> usize {
         self.descriptors * Layout::FLAT.words()
     }
@@ -53,15 +53,15 @@ pub struct Buffers {
     pub clipped_descriptors: &'static mut [u32],
     /// Band lists of clipped triangles, or of the lines of a mesh's edges.
     pub clipped_lists: &'static mut [u32],
-    /// Output of the clipper in `clipped_descriptors` and `clipped_lists`, if `sets` has a second set.
+    /// Counts of the clipper's output in `clipped_descriptors` and `clipped_lists`, if `sets` has a second set.
     pub clipped_counts: ListCounts,
     /// The sets of lists written by the geometry passes and by the clipper.
     pub sets: [Option<Set>; 2],
-    /// Counts of triangles of the geometry passes and the clipper.
+    /// Triangle counts of the geometry passes and of the clipper.
     pub stats: Stats,
-    /// The textures that the descriptors name.
+    /// The textures to which the descriptors refer.
     pub textures: TextureTable,
-    /// The list shift of both passes for each size of a picture, in the order of [`Size::ALL`].
+    /// The list shift of the geometry and raster passes for each picture size, in the order of [`Size::ALL`].
     list_shifts: [u8; Size::ALL.len()],
 }
 
@@ -91,12 +91,12 @@ impl Buffers {
         })
     }
 
-    /// The memory of a wireframe's segments, which has no clipped triangles.
+    /// The memory for the segments of a wireframe: that of the clipped triangles, which a wireframe does not have.
     pub const fn segments(&self) -> &[[u32; Segment::WORDS]] {
         self.clipped_descriptors.as_chunks().0
     }
 
-    /// The memory of a wireframe's segments, mutable.
+    /// The memory for the segments of a wireframe, mutable.
     pub const fn segments_mut(&mut self) -> &mut [[u32; Segment::WORDS]] {
         self.clipped_descriptors.as_chunks_mut().0
     }
@@ -106,12 +106,12 @@ impl Buffers {
         (self.sets, self.stats) = ([None; 2], Stats::default());
     }
 
-    /// The list shift of both passes for a picture of this size.
+    /// The list shift of the geometry and raster passes for a picture of this size.
     pub const fn list_shift(&self, size: Size) -> u8 {
         self.list_shifts[size as usize]
     }
 
-    /// Number of descriptors of this layout that fit a set.
+    /// Number of descriptors of this layout that fit the memory of a set.
     pub const fn descriptor_limit(&self, layout: Layout) -> u32 {
         (self.descriptors.len() / layout.words()) as u32
     }
@@ -166,7 +166,7 @@ pub struct TextureTable {
 }
 
 impl TextureTable {
-    /// Number of 32-bit words of a table: a descriptor names a texture by a byte.
+    /// Number of 32-bit words in a table: a descriptor has 8 bits for the number of a texture.
     const WORDS: usize = 1 << 8;
 
     const fn new(addresses: &'static mut [u32]) -> Self {
@@ -182,8 +182,8 @@ impl TextureTable {
         (self.count, self.blends) = (0, false);
     }
 
-    /// Adds the textures of a mesh to the table if they are new, or as many entries of a replacement texture. Returns the textures for
-    /// the geometry pass; `None` for a mesh without textures or coordinates.
+    /// Adds the textures of a mesh to the table, unless the table already contains them; with a replacement texture, adds entries of this
+    /// texture in their place. Returns the textures for the geometry pass; `None` for a mesh without textures or texture coordinates.
     ///
     /// # Errors
     /// The table is full.
@@ -196,10 +196,10 @@ impl TextureTable {
         let Some((coordinates, first)) = coordinates.zip(mesh.textures().next()) else {
             return Ok(None);
         };
-        // The textures of a mesh follow each other in the table.
+        // The textures of a mesh are consecutive entries of the table.
         let before = match replacement {
             Some(replacement) => {
-                // All meshes of the frame show this texture, so they share its entries.
+                // All meshes of the frame show this texture, so the meshes share its entries.
                 let mut missing = mesh.textures().skip(self.count);
                 missing
                     .all(|_| self.add(replacement).is_some())
@@ -220,7 +220,7 @@ impl TextureTable {
         }))
     }
 
-    /// The number of a texture, which is added to the table if it is new; `None` if the table is full.
+    /// The number of a texture in the table. Adds the texture if the table does not contain it; `None` if the table is full.
     pub fn number(&mut self, texture: &Texture) -> Option<u8> {
         let address = address(texture.bytes());
         let known = self.addresses.get(1..=self.count).unwrap_or_default();
@@ -257,7 +257,7 @@ pub struct Projected {
     pub words: usize,
     /// Number of segments in memory.
     pub lines: u32,
-    /// Counts of these words, without pixels.
+    /// Counts of the projected words, without pixels.
     pub stats: WireframeStats,
 }
 

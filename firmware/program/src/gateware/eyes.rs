@@ -15,14 +15,14 @@ use super::renderer::{GatewareRenderer, Output};
 
 /// The picture of the right eye.
 pub struct RightEye {
-    /// Its colours.
+    /// Colours of the right eye's picture in RGB565.
     pub colour: &'static mut [u16],
     /// Cost of the right eye's frame, stored while the frame of the left eye is drawn.
     rendered: Option<Rendered>,
 }
 
 impl RightEye {
-    /// Makes a picture in this memory.
+    /// Creates the picture of the right eye in this memory.
     pub const fn new(colour: &'static mut [u16]) -> Self {
         Self {
             colour,
@@ -30,7 +30,7 @@ impl RightEye {
         }
     }
 
-    /// Starts or continues the drawing of a stereo picture to `output`, as [`GatewareRenderer::advance`] does with a frame.
+    /// Starts or continues the drawing of a stereo picture to `output`, as [`GatewareRenderer::advance`] does for a frame.
     ///
     /// # Errors
     /// As [`GatewareRenderer::advance`].
@@ -87,7 +87,7 @@ impl RightEye {
             colour: &mut *self.colour,
             depth: None,
         };
-        // The renderer tracks the contents of the two frame buffers, and this memory is neither of them.
+        // The renderer tracks the contents of the two frame buffers only, and this memory is not a frame buffer.
         if !gateware.is_busy() {
             gateware.invalidate(output.colour);
         }
@@ -96,7 +96,7 @@ impl RightEye {
         Some(drawn)
     }
 
-    /// Replaces the picture `left` of the left eye by the picture of both eyes.
+    /// Replaces `left`, the picture of the left eye, by the picture of both eyes.
     pub fn join(&self, eyes: &Eyes, left: &mut [u16], progress: &mut dyn FnMut()) {
         let pixels = eyes.left.size.pixel_count();
         let left = left.get_mut(..pixels).unwrap_or_default();

@@ -22,13 +22,13 @@ pub enum Fallback {
     NoSky,
     /// This gateware is built without fog on meshes.
     NoFog,
-    /// This gateware is built without pictures of four samples a pixel.
+    /// This gateware is built without support for four samples per pixel.
     NoAntialiasing,
-    /// The triangle engine has fog in perspective only.
+    /// The triangle engine supports fog only in perspective.
     OrthographicFog,
-    /// The fog of the triangle engine would cover rectangles.
+    /// The fog of the triangle engine would also be drawn over rectangles.
     RectanglesInFog,
-    /// The triangle engine draws textures under flat light only.
+    /// The triangle engine supports textures only with flat shading.
     SmoothTextures,
     /// The frame has more textures than the triangle engine can number.
     TooManyTextures,
@@ -48,7 +48,7 @@ pub enum Fallback {
 }
 
 impl Fallback {
-    /// The options of `cargo xtask gateware` that build the missing feature; `None` for another reason.
+    /// The options of `cargo xtask gateware` that add the missing feature; `None` for other reasons.
     const fn build(&self) -> Option<&'static str> {
         match self {
             Self::NoSmoothShading => Some("--smooth"),
@@ -75,7 +75,7 @@ impl Fallback {
         }
     }
 
-    /// Whether the cause is a feature missing in this build of the gateware.
+    /// Whether the reason is a feature that this build of the gateware lacks.
     pub const fn is_left_out(&self) -> bool {
         self.build().is_some()
     }
@@ -114,7 +114,7 @@ impl From<RenderError> for Fallback {
     }
 }
 
-/// Writes the reason and, if a feature is missing, which build has it.
+/// Writes the reason and, if a feature is missing, the command that builds gateware with this feature.
 impl fmt::Display for Fallback {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
@@ -129,7 +129,7 @@ impl fmt::Display for Fallback {
             Self::NoSky => f.write_str("triangle engine: this gateware has no sky behind meshes")?,
             Self::NoFog => f.write_str("triangle engine: this gateware has no fog on meshes")?,
             Self::NoAntialiasing => {
-                f.write_str("triangle engine: this gateware draws one sample a pixel")?;
+                f.write_str("triangle engine: this gateware draws one sample per pixel")?;
             }
             Self::OrthographicFog => {
                 f.write_str("triangle engine: no fog in orthographic projection")?;
@@ -143,7 +143,7 @@ impl fmt::Display for Fallback {
             Self::TooManyTextures => {
                 f.write_str("triangle engine: expected at most 255 textures in a frame")?;
             }
-            Self::NoDepths => f.write_str("triangle engine: this gateware has no depths")?,
+            Self::NoDepths => f.write_str("triangle engine: this gateware has no depth buffer")?,
             Self::Eye => f.write_str("triangle engine: the eye is too far from the origin")?,
             Self::Orthographic => {
                 f.write_str("triangle engine: no smooth shading in orthographic projection")?;
@@ -165,16 +165,15 @@ impl fmt::Display for Fallback {
 /// them.
 #[derive(Clone, Copy, Debug)]
 pub enum Unsupported {
-    /// Every option: this gateware has no geometry passes.
+    /// All options, because this gateware has no geometry passes.
     Geometry,
     /// Clipping to the view volume.
     Volume,
-    /// Winding by the position on the screen.
+    /// [`Winding::Screen`](glint_core::colour::Winding::Screen).
     Winding,
     /// Ambient light on the dark sides of smooth triangles: the engine stores the light of only one side of a vertex.
     DarkSides,
-    /// Transformed normals of the object with this number, from 1, if no memory is free for a copy of
-    /// its mesh.
+    /// Transformed normals of the object with this number, from 1, because no memory is free for a copy of the object's mesh.
     Normals(usize),
 }
 
@@ -184,7 +183,7 @@ impl fmt::Display for Unsupported {
         match self {
             Self::Geometry => f.write_str("none in this gateware"),
             Self::Volume => f.write_str("no clipping to the view volume"),
-            Self::Winding => f.write_str("no winding by the screen"),
+            Self::Winding => f.write_str("no `winding screen`"),
             Self::DarkSides => f.write_str("no ambient light on smooth triangles with `cull off`"),
             Self::Normals(object) => write!(
                 f,

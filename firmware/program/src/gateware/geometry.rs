@@ -3,7 +3,7 @@
 //! While the pass of a mesh runs, the CPU clips the exceptions of the previous mesh, computes the constants of the next mesh, and writes
 //! them to the registers of the engine, which has copied the registers of the running pass.
 //!
-//! For some mesh options the CPU must do all steps before the raster pass; it then does them for all meshes of the frame.
+//! Some mesh options require that the CPU does all steps before the raster pass; the CPU then does these steps for all meshes of the frame.
 
 use core::mem;
 
@@ -27,23 +27,23 @@ use crate::memory::Scratch;
 /// Number of triangles that the CPU makes between two calls of [`Cpu::progress`].
 const TRIANGLES_A_CALL: u32 = 32;
 
-/// Resources for steps that the CPU does because the gateware does not support them.
+/// Resources for the steps that the CPU does in place of the gateware.
 pub struct Cpu<'a> {
     /// Memory for projected vertices.
     pub scratch: &'a mut Scratch,
-    /// The edges of a mesh.
+    /// Memory for the edges of a mesh.
     pub edges: &'a mut EdgeList<'static>,
-    /// Called at short intervals.
+    /// Called at short intervals during long steps.
     pub progress: &'a mut dyn FnMut(),
 }
 
 /// A frame, and the resources of its geometry passes.
 pub struct Job<'a> {
-    /// The frame.
+    /// The frame to draw.
     pub frame: &'a Frame<'a>,
     /// Frame constants of all meshes.
     pub constants: &'a FrameConstants,
-    /// The engine.
+    /// The triangle engine.
     pub engine: &'a mut TriangleEngine,
     /// The memory of the frame.
     pub buffers: &'a mut Buffers,
@@ -57,19 +57,19 @@ pub struct GeometryPasses {
     has_geometry: bool,
     /// Number of the mesh whose pass was started last.
     number: usize,
-    /// Number of triangles of the meshes whose passes have ended, and number of these triangles that were drawn after clipping.
+    /// Of the meshes whose passes have ended: the number of triangles, and the number of triangles drawn after clipping.
     triangles: u32,
     drawn_clipped: u32,
     /// Frame constants of the object whose pass was prepared last.
     own: MeshSetup,
     /// The pass of the next mesh, whose registers have been written.
     prepared: Option<Prepared>,
-    /// The reason why the CPU makes the descriptors of all meshes, without geometry passes.
+    /// The reason why the CPU makes the descriptors of all meshes; `None` if geometry passes make them.
     unsupported: Option<Unsupported>,
 }
 
 impl GeometryPasses {
-    /// Geometry passes of an engine whose descriptors have this layout.
+    /// The initial state, for an engine whose descriptors have this layout.
     pub fn new(layout: Layout, has_geometry: bool) -> Self {
         Self {
             layout,
@@ -88,7 +88,7 @@ impl GeometryPasses {
         self.unsupported
     }
 
-    /// Whether no further pass is prepared.
+    /// Whether no further pass has been prepared.
     pub const fn is_last(&self) -> bool {
         self.prepared.is_none()
     }
@@ -140,8 +140,8 @@ impl GeometryPasses {
         Ok(())
     }
 
-    /// Starts the prepared geometry pass of the first mesh, and prepares the pass of the second mesh. Returns whether a pass runs: without
-    /// a mesh, or if the CPU has made all descriptors, none runs.
+    /// Starts the prepared geometry pass of the first mesh, and prepares the pass of the second mesh. Returns whether a pass runs; `false`
+    /// without a mesh, or if the CPU has made all descriptors.
     pub fn start(&mut self, job: &mut Job, cpu: &mut Cpu) -> Result<bool, Fallback> {
         job.buffers.clear();
         if !MESH.is_built {
@@ -159,19 +159,19 @@ impl GeometryPasses {
         Ok(starts)
     }
 
-    /// Starts the prepared geometry pass, if any. Returns whether there is one.
+    /// Starts the prepared geometry pass, if any. Returns whether a pass was started.
     fn start_prepared(&mut self, job: &mut Job) -> bool {
         let Some(pass) = self.prepared.take() else {
             return false;
         };
-        // SAFETY: the buffers belong to the renderer, are not used by an earlier frame, and are read after the end of this pass; the
-        // mesh and its texture coordinates stay while the renderer is busy.
+        // SAFETY: the buffers belong to the renderer, are not used by an earlier frame, and are read after the end of this pass; the mesh
+        // and its texture coordinates are unchanged while the renderer is busy.
         unsafe { job.engine.start_geometry(pass) };
         true
     }
 
-    /// Continues after the end of a geometry pass: starts the pass of the next mesh, clips this mesh's triangles that need clipping, and
-    /// prepares the pass after the next. Returns whether there is a next mesh.
+    /// Continues after the end of a geometry pass: starts the pass of the next mesh, clips the triangles that the ended pass has listed,
+    /// and prepares the pass after the next. Returns whether there is a next mesh.
     pub fn advance(&mut self, job: &mut Job) -> Result<bool, Fallback> {
         if !MESH.is_built {
             return Ok(false);
@@ -191,7 +191,7 @@ impl GeometryPasses {
         Ok(starts)
     }
 
-    /// Clips those triangles of the mesh with this number that the engine has listed and that are not clipped yet.
+    /// Clips those triangles of the mesh with this number that the engine has listed and that have not been clipped yet.
     ///
     /// Not inlined, because few meshes have such triangles.
     #[inline(never)]
@@ -324,7 +324,7 @@ impl GeometryPasses {
     }
 }
 
-/// A texture for a descriptor; `None` if the triangle has none, or if the table is full, which sets `is_full`.
+/// A texture for a descriptor; `None` if the triangle has no texture, or if the table is full, which sets `is_full`.
 fn numbered(
     table: &mut TextureTable,
     textured: Option<&Textured>,

@@ -11,9 +11,9 @@ use super::rendered::Rendered;
 pub struct Quarters {
     /// Number of quarters that have been drawn or, if passes overlap, whose raster pass has been started.
     pub count: usize,
-    /// The cost of the drawn quarters of lines.
+    /// The result of the quarters drawn so far, in a frame with lines.
     pub rendered: Option<Rendered>,
-    /// Triangle counts of the quarters whose raster pass has been started, except the last of them.
+    /// Triangle counts of the quarters whose raster pass has been started, except the last of these quarters.
     pub triangles: Stats,
     /// Whether the lists of quarter `count` are complete.
     pub is_listed: bool,
@@ -22,12 +22,12 @@ pub struct Quarters {
 }
 
 impl Quarters {
-    /// Whether a quarter of lines has been drawn, and others follow.
+    /// Whether a quarter of a frame with lines has been drawn, and further quarters follow.
     pub const fn has_drawn(&self) -> bool {
         self.rendered.is_some()
     }
 
-    /// Whether one of the running passes has ended, or none runs.
+    /// Whether one of the running passes has ended, or no pass runs.
     pub fn is_ready(&self, engine: &TriangleEngine) -> bool {
         match (self.lists(), self.rasters) {
             (false, false) => true,

@@ -9,18 +9,18 @@ use super::fallback::Unsupported;
 pub struct Rendered {
     /// Clock cycles from the first register write of the frame to the detection of its end.
     pub cycles: u64,
-    /// In a benchmark, the number of these cycles in which the soft core only waited for the gateware.
+    /// In a benchmark, the part of `cycles` in which the soft core only waited for the gateware.
     pub waited: u64,
-    /// Counts of the frame. In a benchmark the triangle counts are those of the last frame only.
+    /// Counts of the frame. In a benchmark, the triangle counts are those of the last frame only.
     pub stats: FrameStats,
     /// Increments of the triangle engine's counters during the frame.
     pub counters: Counters,
-    /// The reason why the CPU made the descriptors of the frame, if it did.
+    /// The reason why the CPU made the descriptors of the frame; `None` if geometry passes made them.
     pub unsupported: Option<Unsupported>,
 }
 
 impl Rendered {
-    /// The sum of two frames, plus further work of `cycles` clock cycles.
+    /// The sum of the costs and counts of two frames, plus `cycles` clock cycles of further work.
     pub fn plus(self, other: Self, cycles: u64) -> Self {
         Self {
             cycles: self.cycles + other.cycles + cycles,

@@ -34,7 +34,7 @@ pub struct Output<'a> {
     pub depth: Option<&'a mut [u32]>,
 }
 
-/// The step of a frame in progress: a pass of the triangle engine, a step of the CPU, or `Idle`.
+/// The current step of the frame in progress: a pass of the triangle engine, a step of the CPU, or `Idle` without a frame.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Stage {
     Idle,
@@ -58,7 +58,7 @@ struct Start {
     raymarcher: raymarch::Counters,
 }
 
-/// The triangle engine, the raymarcher and their memory.
+/// Draws frames with the triangle engine and the raymarcher.
 pub struct GatewareRenderer {
     engine: TriangleEngine,
     raymarcher: Option<Raymarcher>,
@@ -77,11 +77,11 @@ pub struct GatewareRenderer {
     edges: EdgeStats,
     /// Address of frame buffer 0.
     first_frame_buffer: u32,
-    /// Size and background of the picture that the engine drew last into each frame buffer; `None` if the CPU has written to the
-    /// buffer since, if the background was a sky, or if pixels are averages of samples.
+    /// Size and background of the picture that the engine drew last into each frame buffer; `None` if the CPU has written to the buffer
+    /// since then, if the background was a sky, or if pixels are averages of samples.
     drawn: [Option<(Size, Rgb565)>; 2],
     stage: Stage,
-    /// The quarters of a divided frame that have been drawn.
+    /// Progress of a divided frame.
     quarters: Quarters,
     /// Constants of the frame being drawn, and of the next quarter or, in a benchmark, of the next frame. The index `place` of the functions
     /// below selects one of them, together with the buffers of the same index.
@@ -101,8 +101,8 @@ pub struct GatewareRenderer {
 /// main loop takes at least 3,000 cycles, mostly to load its code, so waiting is faster for a short pass of the engine.
 const PATIENCE: u32 = 20_000;
 
-/// Least number of clock cycles between two checks of the watchdog, 13 ms at 81.25 MHz. The interrupt of the vertical blanking, every 16.7
-/// ms, always leads to a check.
+/// Minimum number of clock cycles between two checks of the watchdog, 13 ms at 81.25 MHz, so that every interrupt of the vertical blanking
+/// (each 16.7 ms) causes a check.
 const CHECK_PERIOD: u32 = 1 << 20;
 
 impl GatewareRenderer {
@@ -152,7 +152,7 @@ impl GatewareRenderer {
         2 * buffers.descriptor_limit(self.layout)
     }
 
-    /// The options of the start scene that this gateware draws.
+    /// The options of the start scene that this gateware supports.
     pub fn defaults(&self) -> Defaults {
         let plain = Defaults {
             backend: Backend::Gateware,
@@ -208,13 +208,12 @@ impl GatewareRenderer {
         }
     }
 
-    /// Whether [`advance`](Self::advance) has work: the awaited pass has ended, or the watchdog must be checked.
+    /// Whether [`advance`](Self::advance) can continue: the awaited pass has ended, or the watchdog must be checked.
     pub fn is_due(&self) -> bool {
         self.is_ready() || cpu::cycles_low().wrapping_sub(self.checked) > CHECK_PERIOD
     }
 
-    /// Marks the frame buffer of `colour` as written by the CPU: the engine then writes every pixel of the next frame in
-    /// this buffer.
+    /// Marks the frame buffer of `colour` as written by the CPU, so that the engine writes every pixel of the next frame in this buffer.
     pub fn invalidate(&mut self, colour: &[u16]) {
         let slot = usize::from(self.slot(colour));
         if let Some(drawn) = self.drawn.get_mut(slot) {
@@ -223,7 +222,7 @@ impl GatewareRenderer {
     }
 
     /// Starts or continues the drawing of a frame. `frame` and `output` must not change until the function returns a result; `None` means
-    /// that a pass is still running. The call that starts a frame may take long.
+    /// that a pass is still running. The call that starts a frame may take long, because the CPU computes the constants.
     ///
     /// # Errors
     /// The gateware cannot draw the frame; the gateware is then idle.
@@ -239,7 +238,7 @@ impl GatewareRenderer {
         self.advance_part(frame, output, cpu)
     }
 
-    /// Starts or continues the drawing of a frame, or of its quarter.
+    /// Starts or continues the drawing of an undivided frame, or of one quarter.
     fn advance_part(
         &mut self,
         frame: &Frame,
@@ -247,7 +246,7 @@ impl GatewareRenderer {
         cpu: &mut Cpu,
     ) -> Option<Result<Rendered, Fallback>> {
         if self.is_busy() {
-            // This function polls for the end of short passes: an interrupt for each would take 600 cycles.
+            // This function polls for the end of short passes, because an interrupt for each of them would take 600 cycles.
             self.engine.set_interrupts(false);
         }
         loop {
@@ -320,8 +319,8 @@ impl GatewareRenderer {
         self.enter(next, frame, output).err().map(Err)
     }
 
-    /// The next stage of a frame: `Geometry` if the next geometry pass `runs`; after the last pass `Raster`, or `Lines`, whose pass this
-    /// function starts, for a mesh's edges.
+    /// The next stage of a frame: `Geometry` if the next geometry pass `runs`. After the last geometry pass, `Lines` for a mesh's edges,
+    /// whose pass this function starts, or `Raster`.
     fn after_geometry(&mut self, runs: bool, frame: &Frame) -> Stage {
         if runs {
             return Stage::Geometry;
@@ -335,7 +334,7 @@ impl GatewareRenderer {
         Stage::Raster
     }
 
-    /// Enters the stage of a started geometry pass, or starts the raster pass and enters its stage.
+    /// Enters the stage `next`. For the stage `Raster`, starts the raster pass.
     fn enter(
         &mut self,
         next: Result<Stage, Fallback>,
@@ -383,7 +382,7 @@ impl GatewareRenderer {
             raymarcher: self.raymarcher_counters(frame).unwrap_or_default(),
             waited: self.waited,
             engine: self.engine.counters(),
-            // Comes last, because reading the counters is not part of the frame.
+            // The time is read last, because reading the counters is not part of the frame.
             cycles: cpu::cycles(),
         };
     }
@@ -394,7 +393,7 @@ impl GatewareRenderer {
         Some(self.raymarcher.as_ref()?.counters())
     }
 
-    /// The results of the measurement since `start_measurement`, with the triangle counts in `self.buffers[place]`.
+    /// The results of the measurement since `start_measurement`, including the triangle counts in `self.buffers[place]`.
     fn rendered(&self, frame: &Frame, place: usize) -> Rendered {
         let cycles = cpu::cycles() - self.start.cycles;
         let counters = self.engine.counters().since(&self.start.engine);
@@ -446,13 +445,13 @@ impl GatewareRenderer {
         geometry.prepare(&mut job)
     }
 
-    /// Starts a prepared geometry pass of lines.
+    /// Starts a geometry pass of lines that has been prepared.
     fn start_pass(&mut self, pass: Prepared) {
         // SAFETY: the buffers belong to this renderer, are not used by an earlier pass, and are read after the end of this pass.
         unsafe { self.engine.start_geometry(pass) };
     }
 
-    /// Starts the prepared geometry pass. Returns whether a pass runs.
+    /// Starts the prepared geometry pass, if any. Returns whether a pass runs.
     fn start_geometry(
         &mut self,
         frame: &Frame,
@@ -518,7 +517,7 @@ impl GatewareRenderer {
     }
 
     /// Writes the raymarcher's registers for the field of `self.constants[place]`, or turns the raymarcher off if there is no field. With
-    /// `has_tables`, the raymarcher already holds the right tables, so they are not compared.
+    /// `has_tables`, the raymarcher already holds the correct tables, so the tables are not compared.
     fn set_field(&mut self, place: usize, has_tables: bool) -> Result<(), Fallback> {
         match (&mut self.raymarcher, self.constants[place].field()) {
             (Some(raymarcher), Some(field)) => {
@@ -582,13 +581,14 @@ impl GatewareRenderer {
             },
         };
         *drawn = this;
-        // SAFETY: the lists and the table of textures belong to this renderer and stay until the end of the pass; textures, as
-        // meshes, stay while the renderer is busy; the caller lends the memory of colours and depth codes until the end of the pass.
+        // SAFETY: the lists and the table of textures belong to this renderer and are unchanged until the end of the pass; textures, like
+        // meshes, are unchanged while the renderer is busy; the caller lends the memory of colours and depth codes until the end of the
+        // pass.
         unsafe { self.engine.start_raster(&pass) };
         self.pass_start = cpu::cycles_low();
     }
 
-    /// Cancels the frame and returns an error if the triangle engine has made no progress for too long.
+    /// Cancels the frame, and returns an error, if the triangle engine has made no progress for too long.
     fn check_progress(&mut self, output: &Output) -> Result<(), Fallback> {
         self.checked = cpu::cycles_low();
         if self.watchdog.is_stuck(&self.engine.counters()) {

@@ -4,8 +4,8 @@ use glint_hal::frequency::Frequency;
 use glint_hal::triangle::{Counters, TIMEOUT};
 use litex_pac::cpu;
 
-/// Watchdog of the triangle engine. It checks that the sum of some engine counters changes, because these counters grow while the engine
-/// works.
+/// Watchdog of the triangle engine. It checks that the sum of some engine counters changes, because these counters increase while the
+/// engine works.
 pub struct Watchdog {
     /// Number of clock cycles without progress after which a pass is cancelled.
     limit: u64,
@@ -14,7 +14,7 @@ pub struct Watchdog {
 }
 
 impl Watchdog {
-    /// Makes a watchdog for a clock of `frequency`.
+    /// Creates a watchdog for a clock of `frequency`.
     pub const fn new(frequency: Frequency) -> Self {
         Self {
             limit: frequency.cycles(TIMEOUT),

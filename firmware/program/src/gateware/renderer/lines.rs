@@ -18,7 +18,7 @@ const WORDS_A_CALL: usize = 16;
 const FULL: EngineError = EngineError::Status(Error::Full);
 
 impl GatewareRenderer {
-    /// Projects further words of a program to segments in `self.buffers[place]`. Returns whether all words have been projected.
+    /// Projects the next words of a program to segments in `self.buffers[place]`. Returns whether all words have been projected.
     pub(super) fn project(
         &mut self,
         subject: &WireframeSubject,
@@ -74,8 +74,8 @@ impl GatewareRenderer {
         }
     }
 
-    /// Makes the segments of a mesh's edges in the memory of a benchmark's next frame, while the geometry pass of the faces runs;
-    /// does nothing for another subject.
+    /// Makes the segments of a mesh's edges in the memory of a benchmark's next frame, while the geometry pass of the faces runs. Does
+    /// nothing for other subjects.
     pub(super) fn project_edges(&mut self, frame: &Frame, cpu: &mut Cpu) -> Result<(), Fallback> {
         let Subject::Edges(subject, _) = &frame.subject else {
             return Ok(());

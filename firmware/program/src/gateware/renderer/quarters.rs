@@ -1,7 +1,7 @@
 //! Frames that are drawn in quarters.
 //!
-//! The geometry passes of a quarter run during the raster pass of the quarter before it, except for lines, whose segments need the memory of
-//! both quarters. For a frame of a mesh:
+//! The geometry passes of a quarter run during the raster pass of the previous quarter. Passes of lines do not overlap, because their
+//! segments need the memory of both quarters. For a frame of a mesh:
 //!
 //! ```text
 //! geometry  ░0░ ░1░      ░2░      ░3░
@@ -20,7 +20,7 @@ use crate::gateware::geometry::Cpu;
 use crate::gateware::quarters::Quarters;
 use crate::gateware::rendered::Rendered;
 
-/// Quarter `number` of a frame; for a larger number, the last quarter.
+/// Quarter `number` of a frame; the last quarter if `number` is too large.
 fn quarter_of<'a>(frame: &Frame<'a>, number: usize) -> Frame<'a> {
     let [.., last] = Quarter::ALL;
     Frame {
@@ -31,7 +31,7 @@ fn quarter_of<'a>(frame: &Frame<'a>, number: usize) -> Frame<'a> {
 
 impl GatewareRenderer {
     /// Starts or continues the drawing of a divided frame with lines, one quarter after the other.
-    // Not inlined, as it is rarely needed.
+    // Not inlined, because few frames are divided and have lines.
     #[inline(never)]
     pub(super) fn advance_quarters(
         &mut self,
@@ -61,7 +61,7 @@ impl GatewareRenderer {
         }
     }
 
-    /// Starts a divided frame without lines, or continues after the end of a pass of it.
+    /// Starts a divided frame without lines, or continues the frame after the end of a pass.
     // Not inlined, so that other frames do not load this code into the instruction cache.
     #[inline(never)]
     pub(super) fn step_quarters(

@@ -12,10 +12,10 @@ use crate::gateware::fallback::Fallback;
 use crate::gateware::geometry::Cpu;
 use crate::gateware::rendered::Rendered;
 
-/// The parts of a frame: its quarters, or the whole frame.
+/// The parts of a frame that are drawn separately: the quarters, or the whole frame.
 type Parts<'a> = Vec<Frame<'a>, { Quarter::ALL.len() }>;
 
-/// The parts in turn after the first one, and the first one.
+/// An iterator that repeats the parts in order, from the second part on; and the first part.
 fn first<'p, 'a>(
     parts: &'p [Frame<'a>],
 ) -> Result<(impl Iterator<Item = &'p Frame<'a>>, &'p Frame<'a>), Fallback> {
@@ -53,7 +53,7 @@ impl GatewareRenderer {
         }
     }
 
-    // The functions below draw `count` of the `parts` of a frame, which follow each other in turn.
+    // The functions below draw `count` parts of a frame, from the endless iterator `parts`.
 
     // Not inlined, so that memory.x can place it beside the functions that it calls for each mesh.
     #[inline(never)]
@@ -78,14 +78,14 @@ impl GatewareRenderer {
             }
             let drawn = frame;
             frame = parts.next().unwrap_or(frame);
-            // Computes the constants for the next frame during the last geometry pass, because this code evicts the code of each mesh's
-            // pass from the instruction cache.
+            // Computes the constants for the next frame only during the last geometry pass, because this code evicts the code for the
+            // geometry passes from the instruction cache.
             self.update_constants(frame, next)?;
             while runs {
                 runs = self.await_geometry(drawn, now, output)?;
             }
-            // A raster pass may still read the buffers at `next`. This call writes registers, and the same table of textures again: the
-            // geometry pass, which overwrites these buffers, starts after the end of the raster pass.
+            // A raster pass may still read the buffers at `next`. This call only writes registers, and the same table of textures again.
+            // The geometry pass, which overwrites these buffers, starts after the end of the raster pass.
             self.prepare_geometry(frame, next)?;
             if number > 0 {
                 self.wait(TriangleEngine::raster, output)?;
@@ -121,8 +121,8 @@ impl GatewareRenderer {
         self.check(runs, output)
     }
 
-    /// Draws a frame without a mesh repeatedly. The constants of the next frame are computed during the raster pass. The
-    /// raymarcher's registers are in use during this pass, so they are written after it.
+    /// Draws a frame without a mesh repeatedly. The constants of the next frame are computed during the raster pass. The raymarcher uses
+    /// its registers during this pass, so they are written after the pass.
     fn repeat_field(
         &mut self,
         parts: &[Frame],
@@ -222,13 +222,13 @@ impl GatewareRenderer {
         result.map_err(|error| self.cancel(output, error))
     }
 
-    /// Waits for the end of a pass; the function `result` polls its result.
+    /// Waits for the end of a pass; the function `result` polls the result of the pass.
     fn wait(
         &mut self,
         result: fn(&TriangleEngine) -> PassResult,
         output: &mut Output,
     ) -> Result<(), Fallback> {
-        // A wait is shorter than 2^32 cycles, because the watchdog ends it.
+        // A wait is shorter than 2^32 cycles, because the watchdog ends the pass.
         let start = cpu::cycles_low();
         loop {
             for _ in 0..POLLS {
