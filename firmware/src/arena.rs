@@ -8,15 +8,15 @@ use core::slice;
 use glint_core::allocator::{Allocator, Region};
 use glint_core::object::MAX_OBJECTS;
 
-/// Largest number of uploaded meshes and textures: a mesh for each object, and a replacement texture.
+/// Largest number of uploaded meshes and textures: one mesh for each object, and one replacement texture.
 pub const MAX_UPLOADS: usize = MAX_OBJECTS + 1;
-/// Largest number of uploads: meshes and textures, a program, and a new upload that is to replace one of them.
+/// Largest number of uploads: meshes and textures, a program, and a new upload that will replace another upload.
 const UPLOADS: usize = MAX_UPLOADS + 2;
 
-/// Memory that a task fills or sends over several turns. Until it is given back, no other reference to it exists.
+/// Memory that a task fills or sends over several turns. No other reference to the memory exists until the task gives it back.
 pub struct Loan {
     bytes: &'static mut [u8],
-    /// The part of the bytes that is used.
+    /// The range of `bytes` that is used.
     part: Range<usize>,
     /// The region in the arena that lent the memory; `NONE` for memory outside of arenas.
     region: Region,
@@ -85,7 +85,7 @@ impl Arena {
         self.lent
     }
 
-    /// Number of bytes without a region.
+    /// Number of bytes that belong to no region.
     pub fn free(&self) -> usize {
         self.allocator.free()
     }
@@ -104,14 +104,14 @@ impl Arena {
         self.allocator.allocate(length)
     }
 
-    /// Lends the first `length` bytes of [`staging`](Self::staging), as they are, until [`keep_lent`](Self::keep_lent) or
-    /// [`give_back`](Self::give_back) of this arena. `None` in the same cases as [`allocate`](Self::allocate).
+    /// Lends the first `length` bytes of [`staging`](Self::staging), with their contents, until [`keep_lent`](Self::keep_lent) or
+    /// [`give_back`](Self::give_back) is called. `None` in the same cases as [`allocate`](Self::allocate).
     pub fn lend(&mut self, length: usize) -> Option<Loan> {
         let region = self.allocate(length)?;
         let start = self.allocator.range(region).start;
         self.lent += 1;
         // SAFETY: the region has at least `length` bytes of the memory, which `new` borrowed for `'static`. Only the loan has the region's
-        // number, so no other reference to its bytes is made before the loan ends. The region overlaps no other region, and stays in place
+        // number, so no other reference to its bytes is made before the loan ends. The region overlaps no other region, and is not moved,
         // because `compact` moves nothing while a region is lent.
         let bytes =
             unsafe { slice::from_raw_parts_mut(self.memory.cast::<u8>().add(start), length) };
@@ -127,7 +127,7 @@ impl Arena {
         loan.region
     }
 
-    /// Ends a loan of this arena and frees its region; the bytes stay unchanged.
+    /// Ends a loan of this arena and frees its region. The contents are unchanged.
     pub fn give_back(&mut self, loan: Loan) {
         let region = self.keep_lent(loan);
         self.release(region);

@@ -1,4 +1,4 @@
-//! Execution of console commands, in one module for each subject.
+//! Execution of console commands. Each submodule contains the commands of one subject.
 //!
 //! A reply is text, followed by `ok` or `error: …`. A line of machine-readable text is a key and its value.
 
@@ -42,7 +42,7 @@ pub fn execute<'l>(
     let reply = command.execute(machine)?;
     let changes = !matches!(command.effect(), Effect::None);
     machine.picture.may_note |= changes;
-    // An upload has no effect until it has been accepted.
+    // An upload command stops the demo later, when the upload has been accepted.
     if changes && !matches!(reply, Reply::After(Job::Transfer(_))) {
         machine.demo.stop();
     }

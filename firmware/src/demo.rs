@@ -11,7 +11,7 @@ use crate::scenes::{Library, List, built_in_list};
 const NEXT: u8 = 1 << 0;
 /// Button 1: the previous scene.
 const PREVIOUS: u8 = 1 << 1;
-/// Button 2, if no motion sensor steers the camera: hold the scene, or continue.
+/// Button 2: hold the scene, or continue; not used if the motion sensor steers the camera.
 const HOLD: u8 = 1 << 2;
 
 /// Error number for damaged contents of the flash (docs/boards.md).
@@ -65,7 +65,7 @@ impl Demo {
         self.error = None;
     }
 
-    /// Stops. The shown scene stays.
+    /// Stops the demo. The current scene is still shown.
     pub fn stop(&mut self) {
         self.turns.stop();
         self.orbit = None;
@@ -91,7 +91,8 @@ impl Demo {
         self.error.replace(number) != Some(number)
     }
 
-    /// Handles pressed buttons, one bit each. `steers` states whether the motion sensor steers the camera; it then uses buttons 2 and 3.
+    /// Handles pressed buttons, one bit each. `steers` states whether the motion sensor steers the camera, which then reserves buttons 2
+    /// and 3.
     pub fn press(&mut self, pressed: u8, steers: bool, now: u64) {
         if pressed & NEXT != 0 {
             self.turns.go(Move::Next);

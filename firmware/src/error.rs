@@ -42,11 +42,11 @@ pub enum CommandError<'l> {
     Flash(&'l str, Deviation),
     /// The text of the scene of this name in the flash has an invalid line.
     Line(&'l str, LineError<'static>),
-    /// A scene shows a mesh that the board does not have.
+    /// A scene requires a mesh that the board does not have.
     NoMesh {
-        /// The scene.
+        /// Name of the scene.
         name: &'l str,
-        /// The mesh.
+        /// Name of the mesh.
         mesh: &'l str,
     },
     /// The item of this kind and name in the flash, a mesh or a texture, is refused.
@@ -69,7 +69,7 @@ pub enum CommandError<'l> {
         name: &'l str,
         /// Length of the upload in bytes.
         bytes: usize,
-        /// Length of the free memory in bytes.
+        /// Size of the free memory in bytes.
         free: usize,
     },
     /// Nothing can be uploaded under this name.
@@ -91,9 +91,9 @@ pub enum CommandError<'l> {
     Render(DrawError),
     /// No frame has been drawn yet.
     NoFrame,
-    /// A picture with four samples a pixel has no depth codes.
+    /// A picture with four samples per pixel has no depth codes.
     DepthsOfSamples,
-    /// `bench` has no kernel of this name, but kernels of these names.
+    /// `bench` has no kernel with this name; the list contains the valid names.
     Kernel(&'l str, &'static [&'static str]),
     /// The number of self-tests that failed.
     SelfTest(u32),
@@ -204,7 +204,7 @@ impl Display for CommandError<'_> {
             Self::Line(name, error) => DEMO.when_built(|| write!(f, "scene {name}: {error}")),
             Self::NoMesh { name, mesh } => write!(
                 f,
-                "scene {name}: no mesh `{mesh}`, expected a built-in one, or one of the flash"
+                "scene {name}: no mesh `{mesh}`, expected a built-in mesh or a mesh of the flash"
             ),
             Self::FlashItem(kind, name, error) => DEMO.when_built(|| {
                 write!(f, "{} {name} of the flash: {error}", kind.name())
@@ -232,16 +232,16 @@ impl Display for CommandError<'_> {
             Self::Engine(error) => error.fmt(f),
             Self::TooLong { name, bytes, free } => write!(
                 f,
-                "{name} {bytes}: expected at most {free} bytes, which are free; `unload NAME` frees the memory of an upload"
+                "{name} {bytes}: expected at most {free} bytes, the free memory; `unload NAME` frees the memory of an upload"
             ),
             Self::UploadName(name, error) => {
                 write!(f, "load `{name}`: ")?;
                 match error {
                     NameError::Scene => f.write_str("the name of a scene, expected another name"),
-                    NameError::Own => f.write_str("the word for own textures, expected another name"),
+                    NameError::Own => f.write_str("the keyword for a mesh's own textures, expected another name"),
                     NameError::OtherKind => TEXTURE.when_built(|| write!(
                         f,
-                        "the name of an upload of the other kind; `unload {name}` removes it"
+                        "an upload of the other kind has this name; `unload {name}` removes it"
                     )),
                     NameError::Full => write!(
                         f,
@@ -265,12 +265,12 @@ impl Display for CommandError<'_> {
                 "press: no wireframe shown, expected `program` first",
             ),
             Self::Reach => {
-                f.write_str("press: the wireframe would be more than 16 from its start, expected another key")
+                f.write_str("press: the key would move the wireframe more than 16 units from its start, expected another key")
             }
             Self::Render(error) => write!(f, "render: {error}"),
             Self::NoFrame => f.write_str("stats: no frame drawn, expected `render` first"),
             Self::DepthsOfSamples => {
-                f.write_str("depth: none for pixels of several samples, expected `aa 1` first")
+                f.write_str("depth: no depth codes with several samples per pixel, expected `aa 1` first")
             }
             Self::Kernel(name, expected) => {
                 write!(f, "bench `{name}`: expected one of")?;
@@ -296,7 +296,7 @@ impl Display for CommandError<'_> {
                 f.write_str("replay: no attitudes, expected an upload of a log first")
             }
             Self::Mismatch => f.write_str(
-                "devices: build ids of firmware and gateware differ, expected a matching gateware",
+                "devices: build ids of firmware and gateware differ, expected matching gateware",
             ),
         }
     }

@@ -16,17 +16,17 @@ use crate::picture::Picture;
 /// Time between two updates of the blinking LED and of the digits.
 const HEARTBEAT: Duration = Duration::from_millis(500);
 
-/// LEDs and digits, which show the state of the board.
+/// Shows the state of the board on LEDs and digits.
 pub struct Indicators {
     clock: Clock,
-    /// Time of the next change of the blinking LED.
+    /// Time of the next update.
     beat: Deadline,
     /// The level of the blinking LED.
     blinks: bool,
 }
 
 impl Indicators {
-    /// Makes indicators that update in their first turn.
+    /// Creates indicators whose first update is due at once.
     pub fn new(clock: Clock) -> Self {
         Self {
             clock,
@@ -35,7 +35,7 @@ impl Indicators {
         }
     }
 
-    /// Shows the state of the board, if an update is due; on the LEDs only with `heartbeat`.
+    /// Shows the state of the board if an update is due. Sets the LEDs only with `heartbeat`.
     pub fn poll(
         &mut self,
         devices: &mut Option<Devices>,
@@ -49,7 +49,7 @@ impl Indicators {
         }
         self.beat = self.clock.after(HEARTBEAT);
         self.blinks = !self.blinks;
-        // Polls the future that reads the sensor, so that a transfer whose interrupt is missing times out.
+        // Polls the future that reads the sensor, so that a transfer without an interrupt can time out.
         sensor::advance(cpu::cycles_low());
         let calibrated = imu.calibrated_eighths().filter(|_| IMU.is_built);
         if let Some(devices) = devices {

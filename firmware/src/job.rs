@@ -24,7 +24,7 @@ pub type JobResult = Poll<CommandResult<'static>>;
 pub enum Reply {
     /// The command is done.
     Done,
-    /// The command is done when this job has ended.
+    /// The command is done after this job has ended.
     After(Job),
 }
 
@@ -34,29 +34,29 @@ pub enum Reply {
     reason = "one job exists at a time, and there is no heap"
 )]
 pub enum Job {
-    /// Draw the scene.
+    /// Draws the scene.
     Draw,
-    /// Draw the scene, then print the frame's statistics.
+    /// Draws the scene, then prints the frame's statistics.
     Render,
-    /// Draw the scene, then send the frame.
+    /// Draws the scene, then sends the frame.
     Frame {
-        /// Send depth codes, not colour.
+        /// Whether to send depth codes in place of colours.
         depth: bool,
     },
-    /// Turn the camera once around the model.
+    /// Moves the camera in a full turn around the model.
     Orbit(Orbit),
-    /// Calibrate the sensor, or print its samples.
+    /// Calibrates the sensor, or prints samples.
     Sensor(SensorJob),
-    /// Compute the attitudes after the samples of an uploaded log, in this memory.
+    /// Computes the attitude after each sample of an uploaded log, in this memory.
     Replay(Loan),
-    /// Calibrate the hand's colour, or send its mask.
+    /// Calibrates the hand's colour, or sends the hand's mask.
     Gesture(GestureJob),
-    /// Receive or send data.
+    /// Receives or sends data.
     Transfer(Transfer),
 }
 
 impl Job {
-    /// Whether the next line ends the job. A line waits until any other job has ended.
+    /// Whether the next line of input ends the job. During all other jobs, a line waits until the job has ended.
     pub const fn ends_by_line(&self) -> bool {
         match self {
             Self::Orbit(_) | Self::Sensor(_) | Self::Replay(_) => true,
@@ -74,8 +74,8 @@ impl Job {
         }
     }
 
-    /// Whether the demo may show another scene during the job. It pauses during jobs that print, and during the upload of a log: the
-    /// attitudes will be in the staging memory, so no mesh of the flash may be placed after the log.
+    /// Whether the demo may show another scene during the job. The demo pauses during jobs that print, and during the upload of a log. The
+    /// replay writes the attitudes to the staging memory, so no mesh of the flash may be copied there.
     pub const fn allows_demo(&self) -> bool {
         match self {
             Self::Transfer(transfer) => match transfer.purpose {
@@ -98,12 +98,12 @@ pub struct GestureJob {
 
 /// A job of the sensor.
 pub enum SensorJob {
-    /// Report the calibration until it ends.
+    /// Reports the progress of a calibration until the calibration ends.
     Calibrate {
         /// Number of samples at the last report.
         reported: u32,
     },
-    /// Print samples.
+    /// Prints samples.
     Stream {
         /// Number of samples still to print; `None` for no limit.
         left: Option<u32>,
@@ -112,7 +112,7 @@ pub enum SensorJob {
     },
 }
 
-/// A full turn of the spherical camera about the z axis, one frame at a time.
+/// A full turn of the camera about the z axis, in steps of one frame.
 pub struct Orbit {
     start: Sphere,
     frames: u32,
@@ -123,7 +123,7 @@ pub struct Orbit {
 const ORBIT_FRAMES: u32 = 240;
 
 impl Orbit {
-    /// A turn that begins at `start` and takes `frames` frames, or the default number of frames.
+    /// A turn that begins at `start`, and takes `frames` frames, or [`ORBIT_FRAMES`] for `None`.
     pub fn new(start: Sphere, frames: Option<u32>) -> Self {
         Self {
             start,
@@ -138,7 +138,7 @@ impl Orbit {
             return Poll::Ready(Ok(Reply::Done));
         }
         self.frame += 1;
-        // The shifted number of the frame fits 64 bits. The quotient is at most one full turn, 2^32, which wraps to 0.
+        // The shifted frame number fits 64 bits. The quotient is at most one full turn, 2^32, which wraps to 0.
         let turned = Turns(((u64::from(self.frame) << 32) / u64::from(self.frames)) as u32);
         let sphere = Sphere {
             theta: self.start.theta.wrapping_add(turned),

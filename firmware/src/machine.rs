@@ -35,11 +35,11 @@ pub struct Machine {
     pub scene: Scene,
     /// The time of the scene's animation.
     pub animator: Animator,
-    /// The last picture.
+    /// The last picture, and requests for the next picture.
     pub picture: Picture,
     /// The meshes and wireframe program, built-in and uploaded, and the staging memory.
     pub models: Models,
-    /// The bytes of the flash; `None` if the gateware cannot read it.
+    /// The bytes of the flash; `None` if the gateware cannot read the flash.
     pub flash: Option<&'static [u8]>,
     /// Scenes, lists and meshes of the flash.
     pub library: Library,
@@ -59,7 +59,7 @@ pub struct Machine {
     pub switches: Switches,
     /// The registers that reset the SoC.
     pub ctrl: Ctrl,
-    /// Whether the LEDs show the state of the board: true until a command sets them.
+    /// Whether the LEDs show the state of the board: true until a command sets the LEDs.
     pub heartbeat: bool,
     /// The sender of transfers to the host.
     pub downloads: Downloads,
@@ -68,7 +68,7 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// A machine in the state after reset, without flash and gesture engine.
+    /// A machine in the state after reset, with neither flash nor gesture engine.
     pub fn new(
         identity: Identity,
         clock: Clock,
@@ -108,7 +108,7 @@ impl Machine {
         self.picture.is_outdated(&self.scene, &self.models)
     }
 
-    /// Prints a note if the scene has a replacement texture that no shown mesh shows.
+    /// Prints a note if the scene has a replacement texture that is not visible on any mesh.
     pub fn note_texture(&mut self) {
         let Self { scene, models, .. } = self;
         if !TEXTURE.is_built

@@ -1,7 +1,7 @@
-//! The main loop: tasks take turns, and the CPU sleeps while all tasks wait.
+//! The main loop, which runs each task in turn. The CPU sleeps while all tasks wait.
 //!
-//! No task blocks in its turn: interrupts fill queues, and each task processes the contents of its queues. A command whose reply needs a
-//! frame, samples or a transfer starts a [`Job`], which is polled like a task; input waits in the UART's queue until the job has ended.
+//! A turn of a task never blocks: interrupts fill queues, and each task processes the contents of its queues. A command whose reply needs a
+//! frame, samples or a transfer starts a [`Job`], which is polled like a task. Input waits in the UART's queue until the job has ended.
 
 use core::future::pending;
 use core::pin::pin;
@@ -31,8 +31,8 @@ use crate::renderer;
 use crate::terminal::Input;
 use crate::wireframe::{self, Keypad};
 
-/// Idle time after a reply before the scene is redrawn. It is too short to be visible, but a series of commands then
-/// causes a single frame.
+/// Idle time after a reply before the scene is redrawn. This time is too short to be visible, but lets a series of commands cause only one
+/// frame.
 const QUIET: Duration = Duration::from_millis(2);
 
 /// Bit of button 2, which calibrates the sensor.
@@ -42,13 +42,13 @@ const RECENTRE: u8 = 1 << 3;
 
 /// The tasks in the order of their turns.
 const TASKS: [fn(&mut MainLoop) -> Turn; 12] = [
-    // First, because after an interrupt the gateware waits for the next pass of its frame.
+    // Drawing comes first, because after an interrupt the gateware waits for the next pass of its frame.
     MainLoop::draw,
     MainLoop::poll_job,
     MainLoop::run_demo,
     MainLoop::indicate,
     MainLoop::poll_panel,
-    // Again, because a pass of the loop is long compared with a pass of the gateware.
+    // Drawing comes again, because an iteration of the loop is long compared with a pass of the gateware.
     MainLoop::draw,
     MainLoop::listen,
     |all| sensor::deliver(&mut all.machine.imu),
@@ -63,7 +63,7 @@ pub struct MainLoop {
     machine: Machine,
     job: Option<Job>,
     indicators: Indicators,
-    /// Time at which the idle time after a reply ends.
+    /// End of the idle time after a reply.
     quiet: Deadline,
 }
 
@@ -112,7 +112,7 @@ impl MainLoop {
         self.run_demo();
     }
 
-    /// Continues the demo: shows the next scene when it is due, and moves the camera in scenes with an orbit.
+    /// Continues the demo: shows the next scene when the scene is due, and moves the camera in scenes with an orbit.
     fn run_demo(&mut self) -> Turn {
         let machine = &mut self.machine;
         let is_allowed = self.job.as_ref().is_none_or(Job::allows_demo);
@@ -137,7 +137,7 @@ impl MainLoop {
         let name = machine.demo.scene().unwrap_or_default();
         match commands::show_scene(machine, name) {
             Ok(Reply::After(Job::Orbit(orbit))) => machine.demo.orbit = Some(orbit),
-            // Without a sensor the scene does not move.
+            // If only a sensor is missing, the scene is shown without motion.
             Ok(_) => {}
             Err(error) if error.is_of_sensor() => {}
             Err(error) => {
@@ -160,8 +160,8 @@ impl MainLoop {
         terminal.listen()
     }
 
-    /// Executes the line that the terminal has received, if it is complete and can be executed now: the gateware has drawn its frame, and
-    /// the job has ended, or the line ends the job.
+    /// Executes the line that the terminal has received, if the line is complete, the gateware has drawn its frame, and the job has ended
+    /// or is ended by the line.
     fn answer(&mut self) -> Turn {
         let is_free = self.job.as_ref().is_none_or(Job::ends_by_line);
         if !is_free || self.machine.renderer.is_busy() {
@@ -195,7 +195,7 @@ impl MainLoop {
         }
     }
 
-    /// Turns the camera to the sensor's attitude or moves it to the position that the hand sets, if a frame can be drawn.
+    /// Turns the camera to the sensor's attitude, or moves the camera to the position that the hand sets, if a frame can be drawn.
     fn steer(&mut self) -> Turn {
         let machine = &mut self.machine;
         if machine.renderer.is_busy() || machine.renderer.display.back().is_none() {
@@ -207,7 +207,7 @@ impl MainLoop {
             && let Some(gesture) = &mut machine.gesture
         {
             if let Some(Pose { r, theta, phi }) = gesture.move_to() {
-                // Gesture control keeps the distance in range.
+                // Gesture control limits the distance, so the camera is in range.
                 let _ = scene.set_sphere(Sphere { r, theta, phi });
                 if !picture.is_outdated(scene, &machine.models) {
                     gesture.on_unchanged();
@@ -229,7 +229,7 @@ impl MainLoop {
         turn
     }
 
-    /// Moves the wireframe by one key request, if a frame can be drawn: each frame has at most one step.
+    /// Moves the wireframe by one key request, if a frame can be drawn, so that each frame has at most one step.
     fn step(&mut self) -> Turn {
         let machine = &mut self.machine;
         if !WIREFRAME.is_built
@@ -248,8 +248,8 @@ impl MainLoop {
         Turn::Again
     }
 
-    /// Moves the scene by its animation to the time of the frame that begins now. A command that waits for a picture gets the unmoved
-    /// scene. The azimuth is constant while sensor, hand or `orbit` move the camera.
+    /// Advances the scene's animation to the time of the frame that begins now. A command that waits for a picture gets the scene without
+    /// this step. The azimuth is constant while sensor, hand or `orbit` move the camera.
     fn animate(&mut self) {
         let machine = &mut self.machine;
         let is_awaited = self.job.as_ref().is_some_and(Job::awaits_picture);
@@ -296,13 +296,13 @@ impl MainLoop {
                 renderer.drop_pending();
             }
             if job.is_none() && !self.quiet.passed() {
-                // No interrupt signals the end of this short time.
+                // No interrupt signals the end of this short idle time, so the loop polls.
                 return Turn::Again;
             }
         } else if !renderer.is_due() {
             return Turn::Wait;
         }
-        // Turns of other tasks while the CPU draws.
+        // Runs other tasks while the CPU draws.
         let mut progress = || {
             if let Some(Job::Transfer(transfer)) = job {
                 transfer.poll(terminal, *clock);
@@ -320,7 +320,7 @@ impl MainLoop {
             return Turn::worked(renderer.is_ready());
         };
         picture.set_drawn(drawn, scene, models);
-        // During a job the serial line carries the job's reply, which states the reason itself.
+        // During a job the serial line carries the job's reply, which already contains the reason.
         if job.is_none()
             && let Some(note) = picture.take_note()
         {
@@ -432,7 +432,7 @@ impl MainLoop {
             &machine.imu,
             machine.heartbeat,
         );
-        // The vertical blanking interrupt wakes the tasks that wait for a time. A SoC without scan-out does not have this interrupt.
+        // The vertical blanking interrupt wakes tasks that wait until a certain time. A SoC without scan-out does not have this interrupt.
         if machine.renderer.display.is_visible() {
             turn
         } else {
@@ -441,8 +441,8 @@ impl MainLoop {
     }
 }
 
-/// Handles buttons that were pressed since the last poll. While a wireframe is shown they are its keys; if the demo is on, only with the
-/// switch [`HOLD`] on. Otherwise they select scenes of the demo, if it is on, and control the sensor.
+/// Handles buttons that were pressed since the last poll. While a wireframe is shown, the buttons are the keys of the wireframe; if the
+/// demo is also on, only with the switch [`HOLD`] on. Otherwise the buttons select scenes of the demo, if it is on, and control the sensor.
 fn poll_buttons(
     devices: &Option<Devices>,
     keypad: &mut Keypad,
@@ -459,7 +459,7 @@ fn poll_buttons(
     }
     let pressed = keypad.sample(devices.buttons.read(), clock);
     if pressed == 0 {
-        // No interrupt signals that the level of a button has settled.
+        // No interrupt signals that the level of a button has settled, so the loop polls.
         return Turn::worked(keypad.is_changing());
     }
     let switches = devices.switches.read();

@@ -37,7 +37,7 @@ enum Content {
 }
 
 impl Content {
-    /// The kind that the first bytes of an upload state: a texture, or else a mesh.
+    /// The kind of an upload by its first bytes: a texture, or else a mesh.
     fn stated_kind(bytes: &[u8]) -> Kind {
         if bytes.starts_with(&texture::MAGIC) {
             Kind::Texture
@@ -72,11 +72,11 @@ impl Content {
 pub enum NameError {
     /// The name is the name of a scene.
     Scene,
-    /// The name is the word for the own textures of meshes.
+    /// The name is the keyword for the own textures of meshes.
     Own,
     /// The name is the name of an upload of the other kind.
     OtherKind,
-    /// There are [`MAX_UPLOADS`] uploads with other names.
+    /// There are already [`MAX_UPLOADS`] uploads with other names.
     Full,
 }
 
@@ -101,8 +101,8 @@ impl fmt::Display for UploadError {
     }
 }
 
-/// The built-in meshes and program, the uploads in an arena, and the objects made of the meshes. An uploaded mesh replaces a built-in mesh
-/// of equal name.
+/// The built-in meshes and program, the uploads in an arena, and the objects with their meshes. An uploaded mesh replaces a built-in mesh
+/// with the same name.
 pub struct Models {
     arena: Arena,
     /// The uploaded meshes and textures.
@@ -113,10 +113,10 @@ pub struct Models {
     /// The built-in program, shown until a program is uploaded.
     cube_program: Program<'static>,
     objects: Objects,
-    /// The mesh of the scene of the last [`update`](Models::update). The mesh is stored, because finding it
-    /// by its name takes a thousand clock cycles, and every step of drawing a frame needs it.
+    /// The mesh of the scene at the last [`update`](Models::update). The mesh is stored, because every step of drawing a frame needs the
+    /// mesh, and the search by name takes a thousand clock cycles.
     shown: Mesh<'static>,
-    /// The replacement texture of this scene.
+    /// The replacement texture of the scene at the last [`update`](Models::update).
     replacement_texture: Option<Texture<'static>>,
     revision: u32,
     /// Largest number of triangles of an uploaded mesh.
@@ -124,8 +124,9 @@ pub struct Models {
 }
 
 impl Models {
-    /// Makes the initial models. `shapes` is memory for the built-in meshes, `turned` is memory for copies of meshes with transformed
-    /// normals, `cube_program` is the built-in wireframe program, and `most_triangles` the largest number of triangles of an uploaded mesh.
+    /// Creates the initial models. `shapes` is memory for the built-in meshes, `turned` is memory for copies of meshes with transformed
+    /// normals, `cube_program` is the built-in wireframe program, and `most_triangles` is the largest number of triangles of an uploaded
+    /// mesh.
     ///
     /// # Errors
     /// [`Deviation`] for a damaged cube.
@@ -161,12 +162,12 @@ impl Models {
         self.revision
     }
 
-    /// The mesh of `scene`, with or without a field; the cube if the mesh does not exist.
+    /// The mesh that `scene` shows, with or without a field; the cube if the mesh does not exist.
     pub fn mesh(&self, scene: &Scene) -> Mesh<'_> {
         self.known(&scene.mesh).unwrap_or(self.shapes.cube())
     }
 
-    /// The frame of `scene`, with mesh, objects and texture as of the last [`update`](Self::update).
+    /// The frame of `scene`, with the mesh, the objects and the texture of the last [`update`](Self::update).
     pub fn frame<'a>(&'a self, scene: &'a Scene) -> Frame<'a> {
         scene.frame(Assets {
             mesh: Some(self.shown),
@@ -225,7 +226,7 @@ impl Models {
         self.uploads.len()
     }
 
-    /// Number of free bytes.
+    /// Number of free bytes for uploads.
     pub fn free(&self) -> usize {
         self.arena.free()
     }
@@ -265,7 +266,7 @@ impl Models {
         self.arena.staging()
     }
 
-    /// Checks that the list of uploads has a place for an upload with this name. An upload in progress counts.
+    /// Checks that the list of uploads has a free place for an upload with this name. An upload in progress takes a place.
     ///
     /// # Errors
     /// [`NameError::Full`].
@@ -277,8 +278,8 @@ impl Models {
         Ok(())
     }
 
-    /// Checks that a mesh or a texture of the flash, which is not an upload, can become an upload with this name. The demo also copies, so
-    /// that, unlike an upload, a copy replaces nothing.
+    /// Checks that a mesh or a texture of the flash can become an upload with this name. Unlike an upload by the host, the copy must not
+    /// replace another upload, because the demo also makes such copies.
     ///
     /// # Errors
     /// [`NameError::OtherKind`] or [`NameError::Full`].
@@ -309,11 +310,12 @@ impl Models {
         scene.first_object_of(name).filter(|_| self.has_mesh(name))
     }
 
-    /// Checks lent memory as an upload of this kind, or `None` for the kind that its first bytes state, and keeps it under `name`. It
-    /// replaces an earlier upload of this name; `scene` then no longer shows one of the other kind. No frame may be in progress.
+    /// Checks lent memory as an upload of this kind, or for `None` of the kind that the first bytes indicate, and stores the upload under
+    /// `name`. The upload replaces an earlier upload with this name; `scene` then no longer shows an earlier upload of the other kind. No
+    /// frame may be in progress.
     ///
     /// # Errors
-    /// [`UploadError`]; then nothing changes, and the memory is given back.
+    /// [`UploadError`]; nothing changes then, and the memory is given back.
     pub fn accept(
         &mut self,
         name: &str,
@@ -360,8 +362,8 @@ impl Models {
         Ok(())
     }
 
-    /// Records a change of the uploads. Drops every reference to an upload except those in the list of uploads: empties the list of
-    /// objects, and shows the cube with its own textures.
+    /// Records a change of the uploads. Drops every reference to an upload outside of the list of uploads: empties the list of objects, and
+    /// shows the cube with its own textures.
     fn revise(&mut self) {
         self.revision = self.revision.wrapping_add(1);
         self.objects.truncate(0);
@@ -369,10 +371,10 @@ impl Models {
         self.replacement_texture = None;
     }
 
-    /// Checks lent memory as a wireframe program, and keeps the program; it replaces the last program. No frame may be in progress.
+    /// Checks lent memory as a wireframe program, and stores the program in place of the previous one. No frame may be in progress.
     ///
     /// # Errors
-    /// [`ProgramError`] for an invalid program; then nothing changes, and the memory is given back.
+    /// [`ProgramError`] for an invalid program; nothing changes then, and the memory is given back.
     pub fn accept_program(&mut self, loan: Loan) -> Result<(), ProgramError<'static>> {
         let length = loan.as_ref().len();
         let region = self.arena.keep_lent(loan);
@@ -391,7 +393,7 @@ impl Models {
         }
     }
 
-    /// Removes an upload, which `scene` then no longer shows, and closes the gap by moving other uploads, so no frame may be in progress.
+    /// Removes an upload, which `scene` then no longer shows, and closes the gap by moving other uploads. No frame may be in progress.
     /// Returns whether the upload existed.
     pub fn remove(&mut self, name: &str, scene: &mut Scene) -> bool {
         let Some(position) = self.uploads.iter().position(|upload| upload.name == name) else {
@@ -409,7 +411,7 @@ impl Models {
     fn compact(&mut self) {
         self.revise();
         let cube = Content::Mesh(self.shapes.cube());
-        // No references into the arena may exist while it moves its regions.
+        // No references into the arena may exist while the arena moves its regions.
         let lengths: Vec<usize, MAX_UPLOADS> = self
             .uploads
             .iter_mut()

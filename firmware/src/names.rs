@@ -10,7 +10,8 @@ use crate::arena::MAX_UPLOADS;
 use crate::models::Models;
 use crate::scenes::{DEFAULT, Library, SCENES, SceneItem};
 
-/// The names of this machine. The uploads' names are copies, because the console also completes while meshes are drawn.
+/// The names of this machine. The names of uploads are copies, because the console also completes names while meshes are drawn and the
+/// uploads are borrowed.
 #[derive(Default)]
 pub struct MachineNames {
     library: Library,
@@ -21,7 +22,7 @@ pub struct MachineNames {
 }
 
 impl MachineNames {
-    /// The names of a machine with this library, without uploads.
+    /// The names of a machine with this library of scenes, without uploads.
     pub const fn new(library: Library) -> Self {
         Self {
             library,
@@ -75,7 +76,7 @@ impl Names for MachineNames {
     }
 }
 
-/// Whether a list has the items of the flash of this kind.
+/// Whether a list of names includes the items of this kind in the flash.
 fn is_listed(list: NameList, kind: Kind) -> bool {
     match list {
         NameList::Scenes => kind != Kind::Texture,

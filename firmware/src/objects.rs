@@ -1,4 +1,4 @@
-//! The objects of the scene as drawn: meshes with placements, and copies of meshes with transformed normals.
+//! The objects of the scene in the form for drawing: meshes with placements, and copies of meshes with transformed normals.
 
 use core::{ptr, slice};
 
@@ -15,23 +15,23 @@ use crate::arena::Arena;
 /// Number of normals transformed between two calls of `progress` in [`Objects::update`].
 const NORMALS_A_CALL: u32 = 8;
 
-/// The objects as drawn. Placements, and copies of meshes with transformed normals, are made when an object changes, not for each
-/// frame.
+/// The objects in the form for drawing. Placements, and copies of meshes with transformed normals, are made when an object changes, not for
+/// each frame.
 pub struct Objects {
     /// The mesh of each object.
     sources: Vec<Source, MAX_OBJECTS>,
-    /// The objects as drawn.
+    /// The objects that are drawn.
     objects: Vec<Object<'static>, MAX_OBJECTS>,
     /// Memory for the copies.
     memory: Arena,
-    /// Whether all copies that are needed, and that fit the memory, have been made.
+    /// Whether no further copy is needed, or no further copy fits the memory.
     is_turned: bool,
 }
 
 /// The original mesh of an object.
 struct Source {
     mesh: Mesh<'static>,
-    /// The copy that is drawn in place of the mesh.
+    /// The copy that is drawn in place of the mesh, if any.
     copy: Option<Copy>,
 }
 
@@ -44,7 +44,7 @@ struct Copy {
 }
 
 impl Objects {
-    /// Makes an empty list of objects; `memory` is for copies of meshes with transformed normals.
+    /// Creates an empty list of objects; `memory` is for copies of meshes with transformed normals.
     pub const fn new(memory: Arena) -> Self {
         Self {
             sources: Vec::new(),
@@ -67,14 +67,14 @@ impl Objects {
             if let Some(copy) = copy {
                 self.memory.release(copy.region);
             }
-            // The freed memory may hold further copies.
+            // Further copies may fit the freed memory.
             self.is_turned = false;
         }
     }
 
-    /// Updates the objects to those of `scene`; `find` returns a mesh by its name. For each object whose matrix transforms normals, makes
-    /// a copy of the mesh with transformed normals, as long as memory is left, so that the gateware can draw the object. Calls `progress`
-    /// at short intervals. No frame may be in progress.
+    /// Updates the objects to those of `scene`; `find` returns a mesh by its name. For each object whose matrix requires transformed
+    /// normals, makes a copy of the mesh with transformed normals, so that the gateware can draw the object, as long as memory is free.
+    /// Calls `progress` at short intervals. No frame may be in progress.
     ///
     /// An object that has not changed since the last call keeps its copy.
     pub fn update(
@@ -107,7 +107,7 @@ impl Objects {
         self.is_turned = true;
     }
 
-    /// Sets the object with this index to `placed`, and keeps the copy of its mesh if the copy is still valid.
+    /// Sets the object with this index to `placed`, and keeps the copy of the object's mesh if the copy is still valid.
     fn set(&mut self, index: usize, scene: &Scene, placed: &PlacedMesh, mesh: Mesh<'static>) {
         let (Some(source), Some(old)) = (self.sources.get_mut(index), self.objects.get_mut(index))
         else {

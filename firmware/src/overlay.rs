@@ -26,7 +26,7 @@ pub struct Overlay<'a> {
 }
 
 impl<'a> Overlay<'a> {
-    /// An overlay on the picture of this size that was just drawn.
+    /// Creates an overlay on the picture of this size that was just drawn.
     pub fn new(renderer: &'a mut Renderer, size: Size) -> Self {
         let style = MonoTextStyleBuilder::new()
             .font(&FONT_6X10)
@@ -40,7 +40,7 @@ impl<'a> Overlay<'a> {
         }
     }
 
-    /// Writes a line, and moves to the next line.
+    /// Writes a line of text, and moves to the next line.
     pub fn line(&mut self, text: fmt::Arguments) {
         // Drawing never fails.
         let _ = fmt::write(self, text);

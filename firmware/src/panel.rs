@@ -7,16 +7,16 @@ use crate::demo::Demo;
 
 /// Switch 2: shows the text overlay.
 const OVERLAY: u16 = 1 << 2;
-/// Switch 3: the demo holds the shown scene, which then gets all buttons.
+/// Switch 3: the demo holds the shown scene, and all buttons control this scene.
 pub const HOLD: u16 = 1 << 3;
 
-/// LED 0 blinks.
+/// LED 0, which blinks while the firmware runs.
 const BEAT: u16 = 1 << 0;
-/// LED 1: the demo is on.
+/// LED 1: on while the demo is on.
 const ON: u16 = 1 << 1;
-/// LED 2: the demo holds the shown scene.
+/// LED 2: on while the demo holds the shown scene.
 const HELD: u16 = 1 << 2;
-/// LED 3: the demo has had an error.
+/// LED 3: on after an error of the demo.
 const ERROR: u16 = 1 << 3;
 /// The first of the LEDs 4 to 7, which show the number of the scene, from 1.
 const SCENE: u16 = 4;
@@ -42,11 +42,12 @@ impl Switches {
 /// The first of the LEDs 8 to 15, a bar of the progress of a calibration.
 const PROGRESS: u32 = 8;
 
-/// The levels of the LEDs. `blinks` is the level of LED 0, and `calibrated` the done part of a calibration of the motion sensor in eighths.
+/// The levels of the LEDs. `blinks` is the level of LED 0, and `calibrated` is the progress of a calibration of the motion sensor in
+/// eighths.
 pub fn leds(demo: &Demo, blinks: bool, calibrated: Option<u32>) -> u16 {
     let mut leds = if blinks { BEAT } else { 0 };
     if let Some(number) = demo.turns.number() {
-        // Four LEDs.
+        // Only four LEDs show the number.
         leds |= ON | ((number as u16 + 1) & 0xf) << SCENE;
     }
     if demo.turns.is_held() {
@@ -62,8 +63,8 @@ pub fn leds(demo: &Demo, blinks: bool, calibrated: Option<u32>) -> u16 {
     leds
 }
 
-/// Segments of the digits: frames per second at the left, and at the right the number of the demo's scene, alternating with the number of
-/// the last error; during a calibration of the motion sensor `CAL`.
+/// Segments of the digits. The left display shows frames per second, or `CAL` during a calibration of the motion sensor. The right display
+/// shows the number of the demo's scene, alternating with the number of the last error.
 pub fn digits(demo: &Demo, rate: Option<u64>, shows_error: bool, calibrates: bool) -> [u8; 8] {
     let left = rate.map(Display::number).unwrap_or_default();
     let number = demo.turns.number().map(|number| number as u64 + 1);

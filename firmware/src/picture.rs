@@ -1,4 +1,4 @@
-//! The last picture: its contents, its statistics, and whether it is out of date.
+//! The last picture: contents, statistics, and whether a new picture is needed.
 
 use core::fmt;
 use core::mem::{self, Discriminant};
@@ -19,8 +19,8 @@ pub struct Hint {
 }
 
 impl Hint {
-    /// Returns the hint if fewer than one in 64 triangles of the frame are drawn. A mesh with more than one triangle for four pixels of the
-    /// picture gets no hint: most of its triangles cover no pixel.
+    /// Returns the hint if fewer than one in 64 triangles of the frame are drawn. Meshes with more than one triangle per four pixels of the
+    /// picture get no hint, because most of their triangles are too small to cover a pixel.
     fn of(drawn: &Drawn, scene: &Scene) -> Option<Self> {
         let mesh = drawn.stats.mesh.as_ref()?;
         let culls = scene.options.cull && scene.options.winding == Winding::Mesh;
@@ -59,7 +59,7 @@ impl fmt::Display for Note {
     }
 }
 
-/// The contents of a picture.
+/// What a picture shows.
 #[derive(PartialEq)]
 struct Content {
     scene: Scene,
@@ -75,9 +75,9 @@ pub struct Picture {
     content: Option<Content>,
     drawn: Option<Result<Drawn, DrawError>>,
     hint: Option<Hint>,
-    /// Whether a note may be printed: a command that may change the picture permits one.
+    /// Whether a note may be printed: set by each command that may change the picture, and cleared by a note.
     pub may_note: bool,
-    /// The kind of the last printed note, until a frame has none.
+    /// The kind of the last printed note; `None` after a frame without a note.
     noted: Option<Discriminant<Note>>,
     /// Whether the next frame needs depth codes in memory. The gateware only writes them on request.
     pub wants_depth: bool,
@@ -102,7 +102,7 @@ impl Picture {
         self.content = None;
     }
 
-    /// Statistics of the last frame, or the error of its drawing; `None` before the first frame.
+    /// Statistics of the last frame, or the error if the drawing failed; `None` before the first frame.
     pub const fn drawn(&self) -> Option<Result<Drawn, DrawError>> {
         self.drawn
     }
@@ -112,7 +112,7 @@ impl Picture {
         self.hint
     }
 
-    /// The note on the last frame, if it has not been printed: at most one after a command that may change the picture.
+    /// The note on the last frame, if it must be printed now: at most one note after a command that may change the picture.
     pub fn take_note(&mut self) -> Option<Note> {
         let note = match self.drawn {
             Some(Ok(drawn)) => drawn.fallback().map(Note::Fallback),
@@ -130,7 +130,7 @@ impl Picture {
         note
     }
 
-    /// Stores the statistics of the current scene's frame, or the error of its drawing.
+    /// Stores the statistics of the current scene's frame, or the error if the drawing failed.
     #[inline(never)]
     pub fn set_drawn(&mut self, drawn: Result<Drawn, DrawError>, scene: &Scene, models: &Models) {
         self.hint = drawn.as_ref().ok().and_then(|drawn| Hint::of(drawn, scene));

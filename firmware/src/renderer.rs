@@ -9,9 +9,9 @@ use crate::models::Models;
 use crate::overlay::Overlay;
 use crate::picture::Picture;
 
-/// Draws the frame of `scene` with the mesh or program of `models`, and shows it from the next vertical blanking on. Returns `None` while
-/// the gateware draws, and while the frame buffer to draw into is still on the screen; until then, `models` and `scene` must not change.
-/// Drawing by the CPU is slow and calls `progress` at short intervals.
+/// Draws the frame of `scene` with the mesh or program of `models`, and shows the frame from the next vertical blanking on. Returns `None`
+/// while the gateware draws, or while the frame buffer to draw into is still on the screen; `models` and `scene` must not change until the
+/// function returns a result. Drawing by the CPU is slow, and calls `progress` at short intervals.
 pub fn draw(
     renderer: &mut Renderer,
     models: &Models,
@@ -30,7 +30,7 @@ pub fn draw(
     Some(drawn)
 }
 
-// The parts of `draw` that few frames need are functions of their own, so that its code takes few lines of the instruction cache.
+// The parts of `draw` that few frames need are separate functions, so that the code of `draw` takes few lines of the instruction cache.
 
 /// Draws the marker of the hand's position, if any, into the frame that was just drawn.
 #[inline(never)]

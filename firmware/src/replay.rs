@@ -6,7 +6,7 @@ use glint_core::orientation::log::{self, HEADER_BYTES, RECORD_BYTES, Record};
 use glint_core::orientation::{Counts, Tracker};
 use litex_pac::cpu;
 
-/// Number of samples that are replayed in one turn, which takes a few milliseconds.
+/// Number of samples that are replayed in one turn of the task. This takes a few milliseconds.
 const SLICE: usize = 256;
 
 /// The progress of the replay of a log.
@@ -23,7 +23,7 @@ pub struct Replay {
 }
 
 impl Replay {
-    /// Makes the replay of a log with this number of samples.
+    /// Creates the replay of a log with this number of samples.
     pub const fn new(tracker: Tracker, samples: usize) -> Self {
         Self {
             tracker,
@@ -75,8 +75,8 @@ impl Replay {
     /// Replays the next samples of the log in `memory`.
     pub fn advance(&mut self, memory: &mut [u8]) {
         let records = memory.get_mut(self.range()).unwrap_or_default();
-        // The cast does not fail, because the memory is aligned, and header and records are whole words. The
-        // core and the log are both little-endian.
+        // The cast does not fail, because the memory is aligned, and the lengths of header and records are multiples of a word. The core
+        // and the log are both little-endian.
         let records = bytemuck::try_cast_slice_mut::<u8, Record>(records).unwrap_or_default();
         let end = self.samples.min(self.done + SLICE);
         let records = records.get_mut(self.done..end).unwrap_or_default();
@@ -85,12 +85,12 @@ impl Replay {
     }
 }
 
-/// Replaces the samples in `records` by the attitudes after them, and returns the clock cycles of the tracker. `time` is the time in µs of
-/// the last sample.
+/// Replaces each sample in `records` by the attitude after the sample, and returns the clock cycles of the tracker. `time` is the time in
+/// µs of the last sample.
 // The linker script places this function next to the code of the tracker.
 #[inline(never)]
 pub fn track(tracker: &mut Tracker, time: &mut u64, records: &mut [Record]) -> u64 {
-    // Measures the overhead of a measurement: the cycles between two consecutive reads of the cycle counter.
+    // The overhead of a measurement: the cycles between two consecutive reads of the cycle counter.
     let start = cpu::cycles_low();
     let own = cpu::cycles_low().wrapping_sub(start);
     let mut all = 0;

@@ -1,4 +1,4 @@
-//! Scenes and lists of scenes, from the flash and built-in, by name.
+//! Scenes and lists of scenes by name: those in the flash, and the built-in ones.
 
 mod built_in;
 mod content;
@@ -56,7 +56,7 @@ pub fn built_in_list() -> List {
     }
 }
 
-/// The contents of the flash, which have priority over built-in scenes, lists and meshes of equal names.
+/// The contents of the flash, which have priority over built-in scenes, lists and meshes with the same names.
 #[derive(Clone, Copy, Default)]
 pub struct Library {
     contents: Option<Contents<'static>>,
@@ -64,8 +64,8 @@ pub struct Library {
 }
 
 impl Library {
-    /// Makes the library of a board from the flash's bytes at the address of the contents; `None` without a flash. Bytes without the
-    /// header of contents count as no contents: the flash is erased, or holds other data.
+    /// Creates the library of a board from the flash's bytes at the address of the contents; pass `None` without a flash. Bytes without the
+    /// header of contents count as no contents, because the flash is then erased or holds other data.
     pub fn new(flash: Option<&'static [u8]>) -> Self {
         let flash = flash.filter(|_| DEMO.is_built);
         let (contents, error) = match flash.map(Contents::new_checked) {
@@ -80,7 +80,7 @@ impl Library {
         Self { contents, error }
     }
 
-    /// The reason why the contents of the flash are not used.
+    /// The error in the contents of the flash, because of which the contents are not used.
     pub const fn error(&self) -> Option<Deviation> {
         self.error
     }

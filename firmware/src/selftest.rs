@@ -24,7 +24,7 @@ use crate::machine::Machine;
 const TESTED: usize = 16 << 10;
 /// Timeout for a vertical blanking.
 const BLANKING: Duration = Duration::from_millis(100);
-/// Timeout for a sample of the motion sensor, which may still be starting.
+/// Timeout for a sample of the motion sensor, which may still be starting up.
 const SAMPLE: Duration = Duration::from_millis(300);
 
 /// The characters of the digits from left to right, and the time for which they are shown.
@@ -35,9 +35,9 @@ const LOOK: Duration = Duration::from_secs(3);
 pub enum Verdict {
     /// The part is present and works.
     Passed,
-    /// The part shows a text, which a person must check.
+    /// The part shows a text that a person must check.
     Shows(&'static str),
-    /// The part is missing in the board, the gateware or the firmware.
+    /// The board, the gateware or the firmware lacks the part.
     Absent,
     /// The part is present and does not work.
     Failed(Failure),
@@ -49,7 +49,7 @@ pub enum Failure {
     Identity,
     /// A clock does not advance.
     Stopped,
-    /// A word of memory does not keep its value.
+    /// A word of memory has another value than the value written.
     Memory {
         /// Address of the word.
         address: usize,
@@ -58,7 +58,7 @@ pub enum Failure {
         /// The value read.
         found: u32,
     },
-    /// The data lines of the flash.
+    /// The test of the flash's data lines failed.
     Flash(DataLines),
     /// No vertical blanking came in time.
     Blanking,
@@ -119,7 +119,7 @@ impl fmt::Display for Failure {
             Self::Sensor(error) if IMU.is_built => error.fmt(f),
             Self::NoSample => write!(f, "no sample for {} ms", whole_millis(SAMPLE)),
             Self::ImageSensor(error) if GESTURE.is_built => error.fmt(f),
-            // Failures of parts that this build does not include never occur.
+            // The other failures are of parts that this build does not include, so they do not occur.
             Self::Sensor(_) | Self::ImageSensor(_) => Ok(()),
         }
     }
@@ -152,7 +152,7 @@ pub fn run(machine: &mut Machine) -> u32 {
         let verdict = draw(machine, picture);
         report(machine, picture.name(), verdict);
     }
-    // Runs after the pictures, which use the memory that scan-out reads.
+    // Runs after the tests with pictures, which write to the memory that scan-out reads.
     let verdict = underflow(machine);
     report(machine, "underflow", verdict);
     failed
@@ -160,7 +160,7 @@ pub fn run(machine: &mut Machine) -> u32 {
 
 type Test = fn(&mut Machine) -> Verdict;
 
-/// The tests that run before the tests of the engines, which depend on memory and scan-out.
+/// The tests that run before the tests of the engines, because the engines depend on memory and scan-out.
 const TESTS: [(&str, Test); 9] = [
     ("identity", |machine| {
         Verdict::check(machine.identity.matches(), Failure::Identity)
@@ -211,7 +211,7 @@ fn memory(window: &mut [u8]) -> Verdict {
     Verdict::Passed
 }
 
-/// Checks the data lines of the flash by the bytes that an image or a bitstream begins with.
+/// Checks the data lines of the flash with the bytes at the beginning of an image or a bitstream.
 fn flash(bytes: Option<&[u8]>) -> Verdict {
     match bytes.map(data_lines) {
         None | Some(DataLines::Erased) => Verdict::Absent,
@@ -263,7 +263,7 @@ fn camera(machine: &mut Machine) -> Verdict {
     }
 }
 
-/// Waits until a frame buffer is free, which the next vertical blanking ensures.
+/// Waits until a frame buffer is free, at the latest after the next vertical blanking.
 fn scan_out(machine: &mut Machine) -> Verdict {
     let display = &mut machine.renderer.display;
     if !display.is_visible() {

@@ -35,10 +35,10 @@ impl fmt::Display for StartError {
         match self {
             Self::Hardware(error) => error.fmt(f),
             Self::Cube(error) if MESH.is_built => write!(f, "the built-in cube: {error}"),
-            Self::Cube(_) => f.write_str("the built-in cube"),
+            Self::Cube(_) => f.write_str("the built-in cube is invalid"),
             Self::Program(error) if WIREFRAME.is_built => write!(f, "the built-in {error}"),
-            Self::Program(_) => f.write_str("the built-in wireframe program"),
-            Self::Camera(error) => write!(f, "the first camera: {error}"),
+            Self::Program(_) => f.write_str("the built-in wireframe program is invalid"),
+            Self::Camera(error) => write!(f, "the initial camera: {error}"),
         }
     }
 }
@@ -46,7 +46,7 @@ impl fmt::Display for StartError {
 /// Starts the machine.
 ///
 /// # Errors
-/// The hardware cannot start; or the built-in cube or program, or the initial camera is faulty.
+/// The hardware cannot start, or the built-in cube, the built-in program or the initial camera is invalid.
 pub fn machine() -> Result<Machine, StartError> {
     let Hardware {
         identity,
@@ -58,7 +58,7 @@ pub fn machine() -> Result<Machine, StartError> {
         spare,
         ctrl,
     } = Hardware::start().map_err(StartError::Hardware)?;
-    // Without gateware that draws meshes the soft core draws them, whatever their size.
+    // Without gateware that draws meshes, the number of triangles is not limited, because the soft core draws them.
     let gateware = renderer.gateware.as_ref();
     let most_triangles = gateware.map_or(u32::MAX, GatewareRenderer::most_triangles);
     let program = Program::new_checked(CUBE.as_flattened());

@@ -12,7 +12,7 @@ use heapless::String;
 
 use crate::names::MachineNames;
 
-/// Longest time to wait for a serial line that accepts no text; then the text is dropped.
+/// Longest time to wait for a serial line that accepts no text. After this time the text is dropped.
 const SEND_TIMEOUT: Duration = Duration::from_millis(500);
 
 /// Input from the user.
@@ -37,7 +37,7 @@ pub struct Terminal {
     waiting: Option<Input>,
     /// The names for completion.
     pub names: MachineNames,
-    /// Whether the serial line is lent to a transfer.
+    /// Whether a transfer uses the serial line.
     is_lent: bool,
 }
 
@@ -67,7 +67,7 @@ impl Terminal {
         self.is_lent = is_lent;
     }
 
-    /// Receives and echoes input until a line is complete. Bytes of further lines wait in the UART's queue.
+    /// Receives and echoes input until a line is complete. Bytes after this line wait in the UART's queue.
     pub fn listen(&mut self) -> Turn {
         let mut byte = [0];
         let mut has_worked = false;
@@ -94,7 +94,7 @@ impl Terminal {
         self.print(format_args!("{PROMPT}"));
     }
 
-    /// Prints a line above the prompt and the line being typed.
+    /// Prints a line of text above the prompt and the line being typed.
     pub fn notify(&mut self, text: fmt::Arguments) {
         if self.is_lent {
             return;

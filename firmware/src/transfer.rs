@@ -1,4 +1,4 @@
-//! Uploads and downloads as tasks: runs `glint-core`'s transfers between lent memory and the UART, a part in each turn.
+//! Uploads and downloads as tasks: runs `glint-core`'s transfers between lent memory and the UART, one part per turn.
 //!
 //! During a transfer the serial line carries no other text. A transfer ends when it is complete, when the other side cancels it,
 //! or after a timeout.
@@ -17,9 +17,9 @@ use glint_scene::Name;
 use crate::arena::Loan;
 use crate::terminal::Terminal;
 
-/// Number of bytes added to the CRC-32 in a turn.
+/// Number of bytes added to the CRC-32 per turn.
 const SUMMED: usize = 4 << 10;
-/// Largest number of exchanges with the UART's queues in a turn, each of up to 256 received bytes.
+/// Largest number of exchanges with the UART's queues per turn. An exchange has up to 256 received bytes.
 const EXCHANGES: u32 = 8;
 
 /// Timeouts of all transfers.
@@ -43,15 +43,15 @@ pub struct Transfer {
     pub purpose: Purpose,
     /// The length and CRC-32 that the host has announced for an upload.
     announced: Option<Manifest>,
-    /// The session number of a download.
+    /// The session number of the download.
     session: u8,
     stage: Stage,
     line: Line,
 }
 
 enum Stage {
-    /// Computes the CRC-32 of the memory: of a download's data, or of the bytes that the memory holds before an upload. The memory may
-    /// already hold the announced data: a tool may have written them, bypassing the cache, or a transfer may have been interrupted near
+    /// Computes the CRC-32 of the memory: of a download's data, or of the bytes in the memory before an upload. The memory may already
+    /// contain the announced data, because a tool has written them directly to memory, or because a previous transfer was interrupted near
     /// its end.
     Sum(Sum),
     Receive(Endpoint<Receiving<Loan>>),
@@ -146,7 +146,7 @@ impl Transfer {
         matches!(self.stage, Stage::Over(..))
     }
 
-    /// Returns memory and result of a transfer that has ended.
+    /// Returns the memory and the result of a transfer that has ended.
     pub fn take_result(&mut self) -> Option<(Loan, Result<(), Failure>)> {
         match &mut self.stage {
             Stage::Over(memory, result) => Some((mem::take(memory), *result)),
@@ -171,7 +171,7 @@ impl Sum {
         }
     }
 
-    /// Adds the next part. After the last part, returns the memory, its length and its CRC-32.
+    /// Adds the next part to the CRC-32. After the last part, returns the memory, its length and its CRC-32.
     fn advance(&mut self) -> Option<(Loan, Manifest)> {
         let bytes = self.memory.as_ref();
         let length = bytes.len();
@@ -181,7 +181,7 @@ impl Sum {
         self.done = end;
         (end == length).then(|| {
             let manifest = Manifest {
-                // Memory has less than 2^32 bytes.
+                // The memory has less than 2^32 bytes, so the conversion does not fail.
                 length: length as u32,
                 crc32: self.digest.clone().finalize(),
             };
@@ -194,7 +194,7 @@ impl Sum {
 struct Line {
     uart: &'static ConsoleUart,
     frame: [u8; MAX_FRAME],
-    /// The range of `frame` that has not been put into the UART's queue, because the queue was full.
+    /// The range of `frame` that is not yet in the UART's queue, because the queue was full.
     unsent: Range<usize>,
 }
 
@@ -242,8 +242,8 @@ impl Line {
             State::Failed(failure) if self.unsent.is_empty() => Some(Err(failure)),
             State::Running | State::Done | State::Failed(_) => None,
         };
-        // The end of a transfer waits a few milliseconds for a quiet line. Longer timeouts are checked after each vertical blanking
-        // interrupt.
+        // At its end, a transfer waits a few milliseconds until the line is idle, and no interrupt ends this time. Longer timeouts are
+        // checked after each vertical blanking interrupt.
         (Turn::worked(has_worked || endpoint.is_ending()), result)
     }
 }
@@ -252,18 +252,18 @@ impl Line {
 #[derive(Default)]
 pub struct Downloads {
     session: u8,
-    /// Memory for a copy of the downloaded data; empty while it is lent.
+    /// Memory for a copy of the downloaded data; empty while the memory is lent.
     copy: Loan,
 }
 
 impl Downloads {
-    /// Makes a sender with memory for copies.
+    /// Creates a sender with memory for copies.
     pub const fn new(copy: &'static mut [u8]) -> Self {
         let copy = Loan::new(copy);
         Self { session: 0, copy }
     }
 
-    /// Begins to send memory.
+    /// Begins to send the contents of lent memory.
     pub fn send(&mut self, memory: Loan, terminal: &mut Terminal) -> Transfer {
         self.session = self.session.wrapping_add(1);
         Transfer::begin(Purpose::Download, None, self.session, memory, terminal)

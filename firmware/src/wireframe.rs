@@ -11,7 +11,7 @@ const ZOOM: u16 = 1 << 1;
 /// The keys of buttons 0 to 3.
 const ARROWS: [Key; 4] = [Key::Up, Key::Down, Key::Left, Key::Right];
 
-/// The buttons, and the pending requests of the keys.
+/// The debounced buttons, and the pending requests of the keys.
 #[derive(Default)]
 pub struct Keypad {
     debouncer: Debouncer,
@@ -46,7 +46,7 @@ impl Keypad {
         self.requests.take()
     }
 
-    /// Whether a request waits for a frame.
+    /// Whether a key request waits for a frame.
     pub const fn has_request(&self) -> bool {
         !self.requests.is_empty()
     }

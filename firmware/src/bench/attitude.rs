@@ -1,4 +1,4 @@
-//! Benchmark of methods that integrate a gyroscope's rates to an attitude: clock cycles per sample.
+//! Benchmark of the methods that integrate a gyroscope's rates to an attitude: clock cycles per sample.
 
 use core::cell::RefCell;
 
@@ -12,7 +12,7 @@ use crate::replay;
 /// The time between two samples, in µs.
 const STEP: u32 = 5_000;
 
-/// Number of consecutive samples of one measurement; its result is the mean of the cycles per sample.
+/// Number of consecutive samples in one measurement. The result of a measurement is the mean number of cycles per sample.
 const RUN: u32 = 64;
 /// Number of measurements.
 const RUNS: usize = 16;
@@ -53,7 +53,7 @@ pub fn attitude(report: Report) {
     measure(report, "parabola", rate, |rate| {
         parabola.borrow_mut().advance_order::<3>(rate, STEP, [0; 3]);
     });
-    // Measures the method in use, through the code that replays logs.
+    // Measures the method that the firmware uses, with the code that replays logs.
     let tilt = || Some(Tilt::new(Units::MPU_6050.per_g, TIME_CONSTANT));
     for (name, jitter, tilt) in [
         ("cubic", 0, None),
@@ -77,7 +77,8 @@ pub fn attitude(report: Report) {
                 riscv::interrupt::free(|| replay::track(&mut tracker, &mut time, &mut records));
             (cycles / u64::from(RUN)) as u32
         };
-        // Runs without measurement for the time constant of the tilt correction, because the gain of the correction varies until then.
+        // Runs without measurement for the time constant of the tilt correction, because the gain of the correction varies during this
+        // time.
         for _ in 0..=TIME_CONSTANT / STEP / RUN {
             run();
         }
@@ -86,12 +87,12 @@ pub fn attitude(report: Report) {
     }
 }
 
-/// A pseudo-random slow rate for the measurements, in 1/256 LSB. Its mean is so small that the attitude stays upright.
+/// A slow pseudo-random rate for the measurements, in 1/256 LSB. The mean is so small that the attitude remains almost level.
 fn rate(phase: u32) -> [i32; 3] {
     [0, 8, 16].map(|turn| phase.rotate_left(turn).cast_signed() >> 14)
 }
 
-/// Integrates one sample to first order: q + ½·q·ω·dt, normalised by one Newton step, with 30 fraction bits.
+/// Integrates one sample with the first-order formula q + ½·q·ω·dt, normalised by one Newton step, with 30 fraction bits.
 fn first_order(q: &mut [i32; 4], rate: [i32; 3]) {
     // Half the angle of a rotation at 2^−8 LSB for 2^20 µs: 2^50·π/360/16.4/256/10^6 units of 2^−30 rad.
     const HALF: i64 = 2_340;

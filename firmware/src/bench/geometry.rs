@@ -1,4 +1,4 @@
-//! Geometry kernels with several word lengths, for comparison with the kernels in use.
+//! Benchmark of geometry kernels with several word lengths, for comparison with the kernels that the firmware uses.
 
 use glint_core::fixed::{Q8_24, Turns};
 use glint_core::matrix::{Axis, Matrix};

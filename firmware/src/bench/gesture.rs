@@ -13,8 +13,8 @@ use super::measure::{Report, measure};
 /// The time between two frames in µs.
 const FRAME: u32 = 16_667;
 
-/// Measures the whole control, its hand detection from statistics, and filters of one channel, under the names that `cargo xtask report
-/// gesture` gives them.
+/// Measures the complete control, the hand detection from statistics alone, and filters of one channel. Reports them under the names that
+/// `cargo xtask report gesture` uses.
 pub fn gesture(report: Report) {
     measure(report, "blob", statistics, |statistics| statistics.blob());
     let control = RefCell::new((Control::default(), 0));
@@ -51,7 +51,7 @@ pub fn gesture(report: Report) {
     });
 }
 
-/// A pseudo-random position of the hand within 1/16 of the range.
+/// A pseudo-random position of the hand, within 1/16 of the range.
 fn input(phase: u32) -> Q4_28 {
     Q4_28::from_bits(phase.cast_signed() >> 8)
 }

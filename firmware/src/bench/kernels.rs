@@ -1,10 +1,10 @@
-//! Reciprocals, roots, lengths, quotients and colours, each by several methods, from cheap to exact.
+//! Benchmark of reciprocals, roots, lengths, quotients and colours, each computed with several methods, from fast to exact.
 
 use glint_variants::{colour, division, inverse_root, length, reciprocal, root, unit};
 
 use super::measure::{Report, measure};
 
-/// Measures the kernels of all families, and reports them under their own names.
+/// Measures the kernels of all families, and reports each under its own name.
 pub fn kernels(report: Report) {
     for kernel in reciprocal::KERNELS {
         let input = |phase| kernel.format.number(reciprocal::input(phase), 23);

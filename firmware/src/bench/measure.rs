@@ -1,7 +1,7 @@
 //! Measurement of a kernel's clock cycles.
 //!
-//! A kernel, the measured function, is called with [`INPUTS`] inputs spread over its range. Its code and tables are in
-//! the caches, and interrupts are disabled. The overhead of the measuring code is measured in the same way and subtracted.
+//! A kernel, the measured function, is called with [`INPUTS`] inputs spread over the kernel's range. The code and tables of the kernel are
+//! in the caches, and interrupts are disabled. The overhead of the measuring code is measured in the same way, and subtracted.
 //!
 //! The instruction cache is direct-mapped, and a miss costs more than a kernel. If measuring code and kernel mapped to the same cache
 //! lines, the misses would distort the result. The measuring code therefore exists at two addresses, and the copy with fewer misses is
@@ -30,7 +30,7 @@ pub struct Cycles {
 }
 
 impl Cycles {
-    /// Minimum, median and maximum of measurements, which this function sorts in place. Without measurements all three are 0.
+    /// Minimum, median and maximum of measurements, all 0 without measurements. Sorts the measurements in place.
     pub fn of(cycles: &mut [u32]) -> Self {
         cycles.sort_unstable();
         let at = |index: usize| cycles.get(index).copied().unwrap_or(0);
@@ -62,7 +62,7 @@ pub fn measure<I: Copy, O>(
                 .map(|index| timer(&kernel, input(index)))
                 .sum::<u32>()
         };
-        // The first pass brings code and tables into the caches.
+        // The first pass loads code and tables into the caches.
         pass().min(pass())
     };
     let quieter = if noise(&timers[0]) <= noise(&timers[1]) {
@@ -85,7 +85,7 @@ pub fn measure<I: Copy, O>(
 #[inline(never)]
 #[allow(unsafe_code)]
 fn timed<const PLACE: usize, K: Fn(I) -> O, I, O>(kernel: &K, input: I) -> u32 {
-    // SAFETY: jumps over unused bytes and has no other effect.
+    // SAFETY: the instruction jumps over unused bytes, and has no other effect.
     unsafe {
         asm!("j 1f", ".space {}", "1:", const PLACE * 2048 + 4, options(nomem, nostack, preserves_flags))
     };

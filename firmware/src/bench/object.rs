@@ -39,7 +39,7 @@ pub fn object(report: Report) {
             name,
             |phase| (phase >> 30) as usize,
             |number| {
-                // The constants are computed in place, as in the drawing of a frame.
+                // The constants are computed in place, as when a frame is drawn.
                 let mut own = own.borrow_mut();
                 let placement: Option<&Placement> = placements.get(number);
                 placement.map(|placement| placement.update(&mut own, &view, &camera, RADIUS))

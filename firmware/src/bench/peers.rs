@@ -1,4 +1,4 @@
-//! Benchmark of sine and cosine of third-party crates, for comparison with `glint-core`.
+//! Benchmark of the sine and cosine of third-party crates, for comparison with `glint-core`.
 
 use core::f32::consts::TAU;
 

@@ -16,7 +16,7 @@ const KERNELS: &[&str] = &[
     "sine", "object", "attitude", "geometry", "gesture", "kernels", "triangle", "field",
 ];
 
-/// Default number of frames that the gateware draws back to back for a measurement.
+/// Default number of frames that the gateware draws back to back in one measurement.
 const FRAMES: u32 = 8;
 
 /// Measures a kernel and prints its cycles. `benchmark` is the kernel's name, with a number of frames for a kernel that draws frames.
@@ -67,8 +67,8 @@ pub fn run<'l>(
     Ok(())
 }
 
-/// Measures the drawing of `count` frames of the current scene, back to back: the geometry pass of a frame runs during
-/// the raster pass of the previous frame. The frames are not shown.
+/// Measures the drawing of `count` frames of the current scene, back to back: the geometry pass of each frame runs during the raster pass
+/// of the previous frame. The frames are not shown.
 fn frames<'l>(machine: &mut Machine, count: u32) -> Result<(), CommandError<'l>> {
     let Machine {
         terminal,
@@ -78,7 +78,7 @@ fn frames<'l>(machine: &mut Machine, count: u32) -> Result<(), CommandError<'l>>
         ..
     } = machine;
     models.update(scene, &mut || {});
-    // Waits while a drawn frame is not shown yet, because no other frame can then be drawn.
+    // Waits until the last drawn frame is shown, because only then is a frame buffer free.
     let rendered = loop {
         if let Some(rendered) = renderer.repeat(&models.frame(scene), count) {
             break rendered.map_err(CommandError::Engine)?;

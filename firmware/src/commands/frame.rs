@@ -1,4 +1,4 @@
-//! Commands for frames: drawing, and download of pictures.
+//! Commands that draw frames and download pictures.
 
 use glint_core::console::FrameCommands;
 use litex_pac::cpu;
@@ -41,11 +41,11 @@ fn check_depth(machine: &Machine, is_requested: bool) -> Result<(), CommandError
     Ok(())
 }
 
-/// Begins to send a copy of the last frame to the host: its depth codes if `depth` is true, otherwise its colours. The display continues
+/// Begins to send a copy of the last frame to the host: the depth codes if `depth` is true, otherwise the colours. The display continues
 /// during the transfer.
 ///
 /// # Errors
-/// No frame was drawn, or its drawing failed.
+/// No frame has been drawn, or the drawing of the last frame failed.
 pub fn begin_download(machine: &mut Machine, depth: bool) -> CommandResult<'static> {
     let Machine {
         scene,

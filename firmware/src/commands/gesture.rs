@@ -55,7 +55,7 @@ fn start<'l>(gesture: &mut Gesture, size: FrameSize) -> Result<(), CommandError<
     started.map_err(CommandError::ImageSensor).map(|_| ())
 }
 
-/// Continues a job that waits for a small picture: calibrates with the picture, or sends it.
+/// Continues a job that waits for a small picture: calibrates with the picture, or sends the picture.
 pub fn poll(machine: &mut Machine, job: &GestureJob) -> JobResult {
     let Machine {
         terminal,

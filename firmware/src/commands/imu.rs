@@ -78,7 +78,7 @@ impl<'l> ImuCommands<'l> for Machine {
     }
 }
 
-/// Continues the sensor's job: reports the progress of a calibration, or prints new samples.
+/// Continues a job of the sensor: reports the progress of a calibration, or prints new samples.
 pub fn poll(machine: &mut Machine, job: &mut SensorJob) -> JobResult {
     if !IMU.is_built {
         return Poll::Ready(Ok(Reply::Done));
@@ -111,7 +111,8 @@ pub fn poll(machine: &mut Machine, job: &mut SensorJob) -> JobResult {
                 return Poll::Ready(Err(CommandError::Sensor(error)));
             }
             let samples = imu.samples();
-            // Prints only the newest sample, after all text has been sent: a slow line prints fewer samples, not old samples.
+            // Prints only the newest sample, after all text has been sent, so that a slow serial line gets fewer samples, and not outdated
+            // ones.
             if let Some(sample) = imu.latest()
                 && samples != *last
                 && uart.has_sent()
@@ -180,7 +181,7 @@ fn print_calibration(machine: &mut Machine) {
     terminal.print_entry("bias", &Vector(imu.bias()));
 }
 
-/// Displays the three numbers of a vector with six decimals each.
+/// Displays the three components of a vector with six decimals each.
 struct Vector([Q32_32; 3]);
 
 impl Display for Vector {

@@ -129,7 +129,7 @@ impl<'l> MachineCommands<'l> for Machine {
         self.ctrl
             .reset()
             .write(ctrl::Reset::default().with_soc_rst(true));
-        // The program runs for some more cycles until the reset takes effect.
+        // The program continues for some cycles until the reset takes effect.
         loop {
             core::hint::spin_loop();
         }

@@ -1,4 +1,4 @@
-//! Options of the scene, and the properties of the board on which they depend.
+//! Commands for options of the scene, and the properties of the board on which these options depend.
 
 use glint_core::console::{Executor, ObjectAction, OptionName, Setting};
 use glint_core::feature::Feature;
@@ -19,7 +19,7 @@ struct ThisBoard<'m> {
     models: &'m mut Models,
 }
 
-/// The properties of this board on which scenes depend.
+/// The properties of this board on which options of a scene depend.
 pub const fn board<'m>(renderer: &'m Renderer, models: &'m mut Models) -> impl Board + 'm {
     ThisBoard { renderer, models }
 }

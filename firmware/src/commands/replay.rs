@@ -18,7 +18,7 @@ const PROGRESS: usize = 1_024;
 /// Begins the replay of an uploaded log.
 ///
 /// # Errors
-/// The upload is not a log; its memory is given back.
+/// The upload is not a log. Its memory is then given back.
 pub fn begin(machine: &mut Machine, mut memory: Loan) -> CommandResult<'static> {
     let opened = log::open(memory.as_mut()).map(|(setup, records)| {
         let tracker = setup.tracker();
@@ -49,7 +49,7 @@ pub fn poll(machine: &mut Machine, memory: &mut Loan) -> JobResult {
     };
     replay.advance(memory.as_mut());
     if !replay.is_done() {
-        // Reports progress only after all text has been sent: a slow line gets fewer reports.
+        // Reports progress only after all text has been sent, so that a slow serial line gets fewer reports.
         if replay.unreported() >= PROGRESS && uart.has_sent() {
             terminal.print_entry("replaying", &replay.report());
         }

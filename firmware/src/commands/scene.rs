@@ -1,4 +1,4 @@
-//! Commands that upload meshes, textures and wireframe programs and select what the scene shows: a mesh, a field, both, or a wireframe.
+//! Commands that upload meshes, textures and wireframe programs, or select what the scene shows: a mesh, a field, both, or a wireframe.
 
 use glint_core::block::Block;
 use glint_core::console::{Command, OWN, OrbitCommands, SceneCommands, Setting};
@@ -98,7 +98,7 @@ impl<'l> SceneCommands<'l> for Machine {
         if object.is_some() || !self.models.remove(name, &mut self.scene) {
             return Err(CommandError::Unload(name, object));
         }
-        // From now on the staging memory is at another address, and the other uploads may have moved.
+        // The staging memory is now at another address, and the other uploads may have moved.
         self.replay = None;
         self.renderer.edges.clear();
         Ok(Reply::Done)
@@ -169,7 +169,7 @@ fn list(machine: &mut Machine) {
 /// Shows the default scene, a named scene, the first scene of a list, or a mesh.
 ///
 /// # Errors
-/// The scene cannot be shown; the current scene then stays. If only a sensor is missing, the scene is shown without motion.
+/// The scene cannot be shown; the current scene is then unchanged. If only a sensor is missing, the scene is shown without motion.
 #[inline(never)]
 pub fn show<'l>(machine: &mut Machine, name: &'l str) -> CommandResult<'l> {
     if name == DEFAULT {
@@ -201,7 +201,7 @@ pub fn show<'l>(machine: &mut Machine, name: &'l str) -> CommandResult<'l> {
     shown
 }
 
-/// Content of a scene or list.
+/// The content of a scene or list.
 ///
 /// # Errors
 /// The flash is damaged, or this build lacks parts of the firmware.
@@ -215,14 +215,14 @@ fn content<'l>(name: &'l str, found: &SceneItem) -> Result<Content, CommandError
     content.map_err(|error| CommandError::Flash(name, error))
 }
 
-/// Executes the lines of the scene `name` on the default scene. A camera motion starts when its line is reached.
+/// Resets the scene to the default scene, and executes the lines of the scene `name`. A camera motion starts when its line is executed.
 ///
 /// # Errors
 /// A line is not a scene command or fails, a mesh is missing, or the gateware lacks a block.
 fn show_lines<'l>(machine: &mut Machine, name: &'l str, text: &'static str) -> CommandResult<'l> {
     let backend = machine.scene.backend;
     machine.scene.reset()?;
-    // Unless the scene sets the backend, the gateware must have the blocks that draw it.
+    // The gateware must have the blocks that draw the scene, unless the scene sets the backend.
     machine.scene.backend = Backend::Gateware;
     let (mut is_stated, mut motion) = (false, None);
     for line in lines(text) {
@@ -249,7 +249,7 @@ fn show_lines<'l>(machine: &mut Machine, name: &'l str, text: &'static str) -> C
             }
             let started = command.execute(machine);
             if started.is_err() && !is_stated {
-                // If a sensor is missing, the scene stays.
+                // If a sensor is missing, the scene is still shown.
                 machine.scene.backend = backend;
             }
             motion = Some(started?);

@@ -16,7 +16,7 @@ use crate::machine::Machine;
 /// Prints the statistics of the last frame.
 ///
 /// # Errors
-/// No frame was drawn, or its drawing failed.
+/// No frame has been drawn, or the drawing of the last frame failed.
 pub fn print(machine: &mut Machine, json: bool) -> Result<(), CommandError<'static>> {
     let Machine {
         terminal,
@@ -77,8 +77,7 @@ pub fn print(machine: &mut Machine, json: bool) -> Result<(), CommandError<'stat
     Ok(())
 }
 
-/// Statistics of a frame that both backends (CPU and gateware) report, as names and values. The capacity of the list suffices
-/// for all statistics.
+/// Statistics of a frame that both backends (CPU and gateware) report, as names and values. The list has room for all statistics.
 fn frame_values(
     cycles: u64,
     stats: &FrameStats,
@@ -137,7 +136,7 @@ pub fn engine_values(counters: &Counters) -> impl Iterator<Item = (&'static str,
         let name = match name {
             "items_in" => "words_read",
             "items_out" => "words_written",
-            // These two counts are omitted, because `frame_values` prints them without the pixels of a field.
+            // These two counters are omitted, because `frame_values` prints the counts without the pixels of a field.
             "pixels_covered" | "pixels_drawn" => return None,
             name => name,
         };

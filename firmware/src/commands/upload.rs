@@ -1,4 +1,4 @@
-//! Data for the staging memory: uploads from the host, and meshes and textures of the flash.
+//! Data in the staging memory: uploads from the host, and meshes and textures of the flash.
 
 use glint_core::feature::{DEMO, MESH};
 use glint_core::flash::Kind;
@@ -13,8 +13,8 @@ use crate::job::{CommandResult, Job, Reply};
 use crate::machine::Machine;
 use crate::transfer::{Purpose, Transfer};
 
-/// Begins to receive the data that `manifest` announces into the staging memory. The reply has the line `ready`, or `present` if the
-/// memory already holds the data. `command` is the name of the uploading command.
+/// Begins to receive the data that `manifest` announces into the staging memory. The reply has the line `ready`, or `present` if the memory
+/// already contains the data. `command` is the name of the command for the upload.
 ///
 /// # Errors
 /// The upload is longer than the free memory.
@@ -79,7 +79,8 @@ pub fn finish(machine: &mut Machine, transfer: &mut Transfer) -> CommandResult<'
     Ok(reply)
 }
 
-/// Copies the mesh or texture of this name from the flash to the uploads, unless it has been uploaded. Returns whether it exists.
+/// Copies the mesh or texture with this name from the flash to the uploads, unless an upload has this name. Returns whether the mesh or
+/// texture exists.
 ///
 /// # Errors
 /// The item is damaged, an upload of the other kind has its name, or the free memory is too small.
@@ -111,7 +112,7 @@ pub fn from_flash<'l>(
         .models
         .accept(name, Some(kind), memory, &mut machine.scene);
     accepted.map_err(|error| CommandError::FlashItem(kind, name, error))?;
-    // Copy and check of a large item are slow, and several items may follow.
+    // Empties the queue of sensor events, because copying and checking a large item is slow, and several items may follow.
     sensor::deliver(&mut machine.imu);
     Ok(true)
 }
@@ -123,7 +124,7 @@ pub fn from_flash<'l>(
 fn lend<'l>(machine: &mut Machine, name: &'l str, length: usize) -> Result<Loan, CommandError<'l>> {
     // The upload overwrites the attitudes of an earlier replay in the staging memory.
     machine.replay.take_if(|replay| replay.is_done());
-    // Uploads may move, so another mesh may be loaded at the address of the mesh in the edge list.
+    // Uploads may move, so another mesh may get the address of the mesh in the edge list.
     machine.renderer.edges.clear();
     let memory = machine.models.lend(length);
     memory.ok_or(CommandError::TooLong {

@@ -9,14 +9,14 @@ use super::content::{Content, List};
 pub struct BuiltIn {
     /// Name on the console.
     pub name: &'static str,
-    /// The parts of the firmware that it requires.
+    /// The parts of the firmware that the scene requires.
     pub features: &'static [Feature],
-    /// Its content.
+    /// The lines of the scene, or the names in the list.
     pub content: Content,
 }
 
 impl BuiltIn {
-    /// A scene with a picture. A build without one of its features does not include the lines.
+    /// A scene. A build that lacks one of the features does not include the lines of the scene.
     pub const fn picture(
         name: &'static str,
         features: &'static [Feature],

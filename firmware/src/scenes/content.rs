@@ -3,7 +3,7 @@
 /// Content of a scene or a list.
 #[derive(Clone, Copy, Debug)]
 pub enum Content {
-    /// The console commands, one per line, that set the picture and start camera motion, on top of the default scene.
+    /// The console commands, one per line, that set up the picture and start camera motion, starting from the default scene.
     Lines(&'static str),
     /// The names of other scenes; lists do not nest.
     Scenes(List),

@@ -272,7 +272,7 @@ fn a_scene_that_cannot_be_shown_is_left_out() {
     let missing = scene("size 640 360\nscene gear\n");
     let damaged = piece(Kind::Mesh, "gear", vec![0; 64]);
     let failing = scene("field box:1,1,1\nedges over\n");
-    let no_mesh = "scene bad: no mesh `gear`, expected a built-in one, or one of the flash";
+    let no_mesh = "scene bad: no mesh `gear`, expected a built-in mesh or a mesh of the flash";
     let no_command = "scene bad: line 1: \"frobnicate\" (column 1): expected a command";
     let no_picture = "scene bad: line 2: expected a command that sets the picture";
     for (pieces, number, error) in [

@@ -276,7 +276,7 @@ fn a_texture_is_uploaded_under_a_name() {
         ),
         (
             "load 160 0 own",
-            "load `own`: the word for own textures, expected another name",
+            "load `own`: the keyword for a mesh's own textures, expected another name",
         ),
     ] {
         let found = said(&mut console, line);
