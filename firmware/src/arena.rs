@@ -23,7 +23,7 @@ pub struct Loan {
 }
 
 impl Default for Loan {
-    /// No memory.
+    /// A loan of no memory.
     fn default() -> Self {
         Self::new(&mut [])
     }
@@ -141,7 +141,7 @@ impl Arena {
         unsafe { slice::from_raw_parts(self.memory.cast::<u8>().add(range.start), length) }
     }
 
-    /// Frees a region.
+    /// Frees a region. Its bytes become part of a gap.
     pub fn release(&mut self, region: Region) {
         self.allocator.release(region);
     }

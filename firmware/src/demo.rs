@@ -21,7 +21,7 @@ const ITEM: u8 = 2;
 
 /// The list of scenes, the current scene, and the last error.
 pub struct Demo {
-    /// The current position in the list.
+    /// The position in the list, and the time of the next scene.
     pub turns: Turns,
     list: List,
     /// The orbit of the camera in the shown scene.

@@ -63,11 +63,11 @@ pub enum CommandError<'l> {
     FieldShown,
     /// The gateware cannot draw the frame.
     Engine(Fallback),
-    /// An upload is longer than the memory for it.
+    /// An upload, or a mesh in the flash, is longer than the free memory.
     TooLong {
-        /// Name of the command that uploads, or of the mesh of the flash.
+        /// Name of the upload command, or of the mesh in the flash.
         name: &'l str,
-        /// Length of the upload in bytes.
+        /// Length of the data in bytes.
         bytes: usize,
         /// Size of the free memory in bytes.
         free: usize,
@@ -87,7 +87,7 @@ pub enum CommandError<'l> {
     NoWireframe,
     /// A key would move the wireframe out of range.
     Reach,
-    /// The frame could not be drawn.
+    /// The last frame could not be drawn.
     Render(DrawError),
     /// No frame has been drawn yet.
     NoFrame,

@@ -21,7 +21,7 @@ pub struct Indicators {
     clock: Clock,
     /// Time of the next update.
     beat: Deadline,
-    /// The level of the blinking LED.
+    /// The current level of the blinking LED.
     blinks: bool,
 }
 

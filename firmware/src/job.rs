@@ -22,9 +22,9 @@ pub type JobResult = Poll<CommandResult<'static>>;
     reason = "one reply exists at a time, and there is no heap"
 )]
 pub enum Reply {
-    /// The command is done.
+    /// The command is complete.
     Done,
-    /// The command is done after this job has ended.
+    /// The command is complete after this job has ended.
     After(Job),
 }
 
@@ -92,7 +92,7 @@ impl Job {
 pub struct GestureJob {
     /// Whether the picture has colours, for a calibration, or marks, for a download.
     pub is_colour: bool,
-    /// Time at which the job fails.
+    /// Time at which the job fails if no picture has arrived.
     pub end: Deadline,
 }
 

@@ -25,15 +25,15 @@ use crate::wireframe::Keypad;
 pub struct Machine {
     /// Build ids of firmware and gateware.
     pub identity: Identity,
-    /// Time since start.
+    /// The time source: clock cycles since reset, and timers.
     pub clock: Clock,
-    /// The UART.
+    /// The UART, which the console and transfers share.
     pub uart: &'static ConsoleUart,
     /// The console on the UART.
     pub terminal: Terminal,
     /// The scene: all state that determines the next picture.
     pub scene: Scene,
-    /// The time of the scene's animation.
+    /// Computes the scene's motion from the time of each frame.
     pub animator: Animator,
     /// The last picture, and requests for the next picture.
     pub picture: Picture,
@@ -43,7 +43,7 @@ pub struct Machine {
     pub flash: Option<&'static [u8]>,
     /// Scenes, lists and meshes of the flash.
     pub library: Library,
-    /// The demo.
+    /// The demo, which shows scenes in turn.
     pub demo: Demo,
     /// Frame buffers and renderers.
     pub renderer: Renderer,
@@ -55,7 +55,7 @@ pub struct Machine {
     pub devices: Option<Devices>,
     /// The buttons, and the pending requests of the wireframe's keys.
     pub keypad: Keypad,
-    /// The switches.
+    /// The state of the switches at the last poll.
     pub switches: Switches,
     /// The registers that reset the SoC.
     pub ctrl: Ctrl,

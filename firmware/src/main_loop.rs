@@ -68,7 +68,7 @@ pub struct MainLoop {
 }
 
 impl MainLoop {
-    /// The main loop of `machine`.
+    /// Creates the main loop of `machine`.
     pub fn new(machine: Machine) -> Self {
         let clock = machine.clock;
         Self {
@@ -79,7 +79,7 @@ impl MainLoop {
         }
     }
 
-    /// Runs until reset.
+    /// Runs the tasks in an endless loop.
     pub fn run(&mut self) -> ! {
         let terminal = &mut self.machine.terminal;
         terminal.print(format_args!("Type help for the commands.\n"));
@@ -151,7 +151,7 @@ impl MainLoop {
         Turn::Again
     }
 
-    /// Receives input.
+    /// Receives input from the serial line.
     fn listen(&mut self) -> Turn {
         let Machine {
             terminal, models, ..

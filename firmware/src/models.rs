@@ -19,7 +19,7 @@ use heapless::Vec;
 use crate::arena::{Arena, Loan, MAX_UPLOADS};
 use crate::objects::Objects;
 
-/// Name of an upload without a name.
+/// Default name of an upload, used if the command states none.
 pub const MODEL: &str = "model";
 
 /// A mesh or a texture, with its name and its memory.
@@ -29,7 +29,7 @@ struct Upload {
     region: Region,
 }
 
-/// The content of an upload.
+/// The mesh or the texture of an upload.
 #[derive(Clone, Copy)]
 enum Content {
     Mesh(Mesh<'static>),
@@ -95,7 +95,7 @@ impl fmt::Display for UploadError {
             Self::Content(error) => error.fmt(f),
             Self::Object(number) => write!(
                 f,
-                "the mesh of object {number}, expected `object remove {number}` first"
+                "object {number} shows this mesh, expected `object remove {number}` first"
             ),
         }
     }

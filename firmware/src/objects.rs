@@ -18,7 +18,7 @@ const NORMALS_A_CALL: u32 = 8;
 /// The objects in the form for drawing. Placements, and copies of meshes with transformed normals, are made when an object changes, not for
 /// each frame.
 pub struct Objects {
-    /// The mesh of each object.
+    /// The original mesh of each object.
     sources: Vec<Source, MAX_OBJECTS>,
     /// The objects that are drawn.
     objects: Vec<Object<'static>, MAX_OBJECTS>,
@@ -37,7 +37,7 @@ struct Source {
 
 /// A copy of a mesh with transformed normals.
 struct Copy {
-    /// The memory of the copy.
+    /// The region of memory with the copy.
     region: Region,
     /// The matrix by which the normals have been transformed.
     normals: Normals,

@@ -63,7 +63,7 @@ impl fmt::Display for Note {
 #[derive(PartialEq)]
 struct Content {
     scene: Scene,
-    /// [`Models::revision`].
+    /// The value of [`Models::revision`] when the picture was drawn.
     models: u32,
     marker: Option<Marker>,
 }

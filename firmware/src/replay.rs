@@ -35,7 +35,7 @@ impl Replay {
         }
     }
 
-    /// Number of samples of the log.
+    /// Total number of samples in the log.
     pub const fn samples(&self) -> usize {
         self.samples
     }

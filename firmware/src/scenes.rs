@@ -26,14 +26,14 @@ pub fn named(name: &str) -> Option<&'static BuiltIn> {
 /// A scene or a list of scenes.
 #[derive(Clone, Copy, Debug)]
 pub enum SceneItem {
-    /// A scene or list of the flash.
+    /// A scene or list in the flash.
     Flash(Item<'static>),
-    /// A built-in scene or list.
+    /// A scene or list in the firmware.
     BuiltIn(&'static BuiltIn),
 }
 
 impl SceneItem {
-    /// Content of the scene or list.
+    /// Returns the content of the scene or list.
     ///
     /// # Errors
     /// The flash is damaged.
@@ -85,7 +85,7 @@ impl Library {
         self.error
     }
 
-    /// The items of the flash.
+    /// All items of the flash: scenes, lists, meshes and textures.
     pub fn items(&self) -> impl Iterator<Item = Item<'static>> + use<> {
         self.contents
             .into_iter()
@@ -105,7 +105,7 @@ impl Library {
         self.contents?.find(kind, name)
     }
 
-    /// The first list of the flash.
+    /// The first list of scenes in the flash.
     pub fn first_list(&self) -> Option<Item<'static>> {
         self.items().find(|item| item.kind == Kind::List)
     }

@@ -47,11 +47,11 @@ pub enum Verdict {
 pub enum Failure {
     /// The build ids of gateware and firmware differ.
     Identity,
-    /// A clock does not advance.
+    /// The counter of a clock does not advance.
     Stopped,
     /// A word of memory has another value than the value written.
     Memory {
-        /// Address of the word.
+        /// Address of the word in bytes.
         address: usize,
         /// The written value.
         expected: u32,
@@ -60,15 +60,15 @@ pub enum Failure {
     },
     /// The test of the flash's data lines failed.
     Flash(DataLines),
-    /// No vertical blanking came in time.
+    /// No vertical blanking occurred within the timeout.
     Blanking,
     /// Number of screen lines since reset whose pixels came too late.
     Underflows(u32),
     /// A picture has a wrong checksum.
     Checksum {
-        /// The model's checksum.
+        /// The stored checksum of the model's picture.
         expected: u32,
-        /// The gateware's checksum.
+        /// The checksum of the gateware's picture.
         found: u32,
     },
     /// The gateware did not draw a picture.
@@ -77,7 +77,7 @@ pub enum Failure {
     Sensor(SensorError),
     /// The motion sensor sends no sample, without reporting an error.
     NoSample,
-    /// The image sensor cannot be set up.
+    /// The set-up of the image sensor failed.
     ImageSensor(SetUpError),
 }
 

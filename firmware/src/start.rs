@@ -20,7 +20,7 @@ use crate::transfer::Downloads;
 
 /// Reason why the machine cannot start.
 pub enum StartError {
-    /// The hardware cannot start.
+    /// The start of the hardware failed.
     Hardware(hardware::StartError),
     /// The built-in cube is not a valid mesh.
     Cube(Deviation),
@@ -43,7 +43,7 @@ impl fmt::Display for StartError {
     }
 }
 
-/// Starts the machine.
+/// Starts the hardware, and creates the machine with its initial scene.
 ///
 /// # Errors
 /// The hardware cannot start, or the built-in cube, the built-in program or the initial camera is invalid.

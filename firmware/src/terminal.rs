@@ -21,7 +21,7 @@ const SEND_TIMEOUT: Duration = Duration::from_millis(500);
     reason = "one input exists at a time, and there is no heap"
 )]
 pub enum Input {
-    /// A complete line.
+    /// A complete line of text.
     Line(String<LINE_MAX>),
     /// A line longer than [`LINE_MAX`], whose text is dropped.
     Overlong,
@@ -35,7 +35,7 @@ pub struct Terminal {
     editor: LineEditor,
     output: Output,
     waiting: Option<Input>,
-    /// The names for completion.
+    /// The names that the line editor completes.
     pub names: MachineNames,
     /// Whether a transfer uses the serial line.
     is_lent: bool,
@@ -89,7 +89,7 @@ impl Terminal {
         self.waiting.take()
     }
 
-    /// Prints the prompt.
+    /// Prints the prompt, after which the user can type a line.
     pub fn prompt(&mut self) {
         self.print(format_args!("{PROMPT}"));
     }

@@ -22,7 +22,7 @@ const SUMMED: usize = 4 << 10;
 /// Largest number of exchanges with the UART's queues per turn. An exchange has up to 256 received bytes.
 const EXCHANGES: u32 = 8;
 
-/// Timeouts of all transfers.
+/// Timeouts, which are the same for all transfers.
 const TIMING: Timing = Timing::CONSOLE;
 
 /// The purpose of a transfer.
@@ -33,13 +33,13 @@ pub enum Purpose {
     Program,
     /// An upload of a log of sensor samples.
     Log,
-    /// A download.
+    /// A download of any data.
     Download,
 }
 
 /// A transfer in progress.
 pub struct Transfer {
-    /// The purpose.
+    /// What is transferred, and in which direction.
     pub purpose: Purpose,
     /// The length and CRC-32 that the host has announced for an upload.
     announced: Option<Manifest>,
@@ -88,7 +88,7 @@ impl Transfer {
         }
     }
 
-    /// Continues the transfer.
+    /// Runs one turn of the transfer.
     pub fn poll(&mut self, terminal: &mut Terminal, clock: Clock) -> Turn {
         let now = clock.milliseconds();
         let (turn, next) = match &mut self.stage {

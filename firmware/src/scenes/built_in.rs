@@ -1,4 +1,4 @@
-//! A built-in scene.
+//! Scenes and lists in the firmware.
 
 use glint_core::feature::Feature;
 
@@ -7,7 +7,7 @@ use super::content::{Content, List};
 /// A built-in scene or list of scenes.
 #[derive(Debug)]
 pub struct BuiltIn {
-    /// Name on the console.
+    /// Name of the scene or list on the console.
     pub name: &'static str,
     /// The parts of the firmware that the scene requires.
     pub features: &'static [Feature],
@@ -30,7 +30,7 @@ impl BuiltIn {
         }
     }
 
-    /// A list of scenes.
+    /// Defines a list of scenes.
     pub const fn list(
         name: &'static str,
         features: &'static [Feature],

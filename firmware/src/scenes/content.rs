@@ -12,9 +12,9 @@ pub enum Content {
 /// The names of a list of scenes.
 #[derive(Clone, Copy, Debug)]
 pub enum List {
-    /// A list of the flash: one name per line.
+    /// A list in the flash: a text with one name per line.
     Flash(&'static str),
-    /// A built-in list.
+    /// A list in the firmware: the names.
     BuiltIn(&'static [&'static str]),
 }
 

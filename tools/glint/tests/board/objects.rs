@@ -72,7 +72,7 @@ fn meshes_have_names_and_share_the_memory() {
 
     console.command("object add c scale 0.5").unwrap();
     let refused = console.command("unload c").unwrap_err().to_string();
-    assert!(refused.contains("the mesh of object 1"), "{refused}");
+    assert!(refused.contains("object 1 shows this mesh"), "{refused}");
     console.command("unload a").unwrap();
     console.command("unload b").unwrap();
     assert!(read(&mut console, start, c.len()) == c);

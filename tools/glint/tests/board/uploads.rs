@@ -342,7 +342,7 @@ fn an_upload_replaces_one_of_the_other_kind() {
     assert_eq!(info::<u32>(&mut console, "triangles"), 20);
     console.command("object add model").unwrap();
     let refused = upload(&mut console, &texture).unwrap_err().to_string();
-    let error = "load: refused, previous uploads kept: the mesh of object 1, expected `object remove 1` first";
+    let error = "load: refused, previous uploads kept: object 1 shows this mesh, expected `object remove 1` first";
     assert!(refused.contains(error), "{refused}");
     console.command("object show").unwrap();
     assert_eq!(info::<u32>(&mut console, "triangles"), 20);
