@@ -1,4 +1,4 @@
-//! The board as a program sees it.
+//! The board's inputs and outputs, for programs.
 
 use core::fmt::{self, Write};
 use core::time::Duration;
@@ -25,7 +25,7 @@ pub(crate) const RECEIVED: usize = 256;
 /// Maximum number of samples of the motion sensor per picture: those of 64 ms. If a picture takes longer, the oldest samples are dropped.
 const SAMPLES: usize = 64;
 
-/// A button of the board.
+/// A button of the board, named by its position.
 ///
 /// ```
 /// # use glint_program::host::Host;
@@ -40,17 +40,17 @@ const SAMPLES: usize = 64;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Button {
-    /// Button 0.
+    /// Button 0 of the board.
     Up = 0,
-    /// Button 1.
+    /// Button 1 of the board.
     Down = 1,
-    /// Button 2.
+    /// Button 2 of the board.
     Left = 2,
-    /// Button 3.
+    /// Button 3 of the board.
     Right = 3,
 }
 
-/// The attitude of the motion sensor.
+/// The attitude and the newest sample of the motion sensor.
 ///
 /// ```
 /// use glint_program::core::camera::View;
@@ -71,7 +71,7 @@ pub enum Button {
 pub struct Motion {
     /// The rotation from the sensor's axes to the world's axes.
     pub attitude: Quaternion,
-    /// The newest sample.
+    /// The newest sample of the sensor.
     pub sample: Sample,
 }
 
@@ -227,7 +227,7 @@ impl Board {
         self.held = buttons;
     }
 
-    /// Begins the next picture.
+    /// Stores the input for the next picture.
     pub(crate) fn begin(&mut self, levels: Levels) {
         self.sample_buttons(levels.time, levels.buttons);
         self.switches = levels.switches;
@@ -252,7 +252,7 @@ impl Board {
         self.hand = hand;
     }
 
-    /// The buffer of received bytes.
+    /// The buffer into which received bytes are written.
     pub(crate) fn received_mut(&mut self) -> &mut Vec<u8, RECEIVED> {
         &mut self.received
     }

@@ -16,7 +16,7 @@ pub struct Drawn {
     pub cycles: u64,
     /// Counts of triangles, rays and pixels.
     pub stats: FrameStats,
-    /// The renderer that drew the frame.
+    /// Which renderer drew the frame, and why.
     pub by: RenderedBy,
     /// Whether the frame's depth codes are in memory.
     pub has_depth: bool,
@@ -49,7 +49,7 @@ pub enum RenderedBy {
 /// Reason why a frame is not drawn.
 #[derive(Clone, Copy, Debug)]
 pub enum DrawError {
-    /// The CPU cannot draw the frame.
+    /// The CPU backend cannot draw the frame, for this reason.
     Render(RenderError),
     /// This build does not include the CPU backend, and the gateware cannot draw the frame for the given reason, or the backend is set to
     /// the CPU.

@@ -45,13 +45,13 @@ pub fn on_interrupt() {
 /// Cost per frame, and latency from the end of a frame to its picture, in clock cycles.
 #[derive(Clone, Copy, Default)]
 pub struct Cycles {
-    /// Number of frames so far.
+    /// Number of processed frames.
     pub frames: u32,
     /// Number of cycles that the soft core has used for all frames, including interrupts.
     pub total: u64,
     /// Number of cycles from the end of the last frame that moved the camera to the end of drawing the picture for this move.
     pub latency: u64,
-    /// The largest latency so far.
+    /// Largest latency since the start.
     pub worst: u64,
 }
 
@@ -294,7 +294,7 @@ impl Gesture {
         Some(found)
     }
 
-    /// The gesture engine.
+    /// The driver of the gesture engine.
     pub const fn engine(&self) -> &GestureEngine {
         &self.engine
     }
@@ -304,7 +304,7 @@ impl Gesture {
         self.sensor
     }
 
-    /// Windows of Cr and Cb.
+    /// The windows of Cr and Cb that mark the hand's colour.
     pub const fn windows(&self) -> [Window; 2] {
         self.windows
     }
@@ -319,12 +319,12 @@ impl Gesture {
         matches!(self.sensor, Some(Ok(_))).then(|| self.control.seen())
     }
 
-    /// Columns and rows of a frame.
+    /// Columns and rows of the image sensor's frames.
     pub const fn size(&self) -> [u16; 2] {
         self.size.pixels()
     }
 
-    /// The camera's position.
+    /// The position of the camera that the hand has set.
     pub fn pose(&self) -> Pose {
         self.control.pose()
     }

@@ -69,7 +69,7 @@ impl fmt::Display for StartError {
 pub struct Identity {
     /// Build id of the gateware that the firmware was built for.
     pub firmware: u32,
-    /// Build id of the gateware.
+    /// Build id that the gateware reports.
     pub gateware: u32,
     /// Block enable bits of the gateware: one bit for each optional block.
     pub blocks: u32,
@@ -89,13 +89,13 @@ impl Identity {
 
 /// Devices that are accessed only on gateware with a matching build id.
 pub struct Devices {
-    /// The four buttons.
+    /// The board's four buttons.
     pub buttons: InputPort<u8>,
-    /// The sixteen switches.
+    /// The board's sixteen switches.
     pub switches: InputPort<u16>,
-    /// The sixteen LEDs.
+    /// The board's sixteen LEDs.
     pub leds: OutputPort<u16>,
-    /// The displays of digits.
+    /// The seven-segment displays.
     pub digits: Digits,
     /// End of the self-test of the digits, during which their contents must not change; `None` without a self-test.
     pub tests_digits: Option<Deadline>,
@@ -103,11 +103,11 @@ pub struct Devices {
     pub i2c: Option<I2c>,
 }
 
-/// The hardware after reset.
+/// The devices and memory of the SoC after reset.
 pub struct Hardware {
     /// Build ids of program and gateware.
     pub identity: Identity,
-    /// Time since start.
+    /// The time source: clock cycles since reset, and timers.
     pub clock: Clock,
     /// The devices; `None` if the build ids differ.
     pub devices: Option<Devices>,
@@ -136,7 +136,7 @@ pub struct Spare {
 }
 
 impl Hardware {
-    /// Starts the hardware.
+    /// Takes the peripherals and the memory, and starts the drivers.
     ///
     /// The banner is printed first and needs only the UART, so that later errors are visible. If the build ids of gateware and firmware
     /// differ, only the UART is started, and the clock is assumed to have its default frequency.

@@ -68,7 +68,7 @@ const EDGES: usize = 1 << 20;
 pub enum HostError {
     /// The program's description is faulty.
     Picture(PictureError),
-    /// The model cannot draw the frame.
+    /// The model cannot draw the frame, for this reason.
     Render(RenderError),
 }
 
@@ -89,7 +89,7 @@ impl From<PictureError> for HostError {
     }
 }
 
-/// A program on the host.
+/// A program on the host, with the board on which it runs.
 ///
 /// ```
 /// use glint_program::Board;
@@ -349,7 +349,7 @@ impl<P: Program> Host<P> {
         &self.board
     }
 
-    /// The program.
+    /// The current state of the program.
     ///
     /// ```
     /// # use glint_program::{Board, Picture, PictureError, Program};
@@ -427,7 +427,7 @@ impl Program for () {
     }
 }
 
-/// A picture in memory.
+/// A picture in memory, as a source for a canvas.
 struct Colours<'p>(&'p mut [u16]);
 
 impl Pixels for Colours<'_> {

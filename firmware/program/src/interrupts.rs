@@ -13,13 +13,13 @@ use crate::supervision;
 
 /// Parts of the SoC that are present, and that this build supports.
 pub struct Present {
-    /// I2C and timer.
+    /// Whether the I2C bus and the timer are present.
     pub devices: bool,
-    /// Scan-out.
+    /// Whether scan-out is present.
     pub scanout: bool,
-    /// The triangle engine.
+    /// Whether the triangle engine is present.
     pub triangle: bool,
-    /// The gesture engine.
+    /// Whether the gesture engine is present.
     pub gesture: bool,
 }
 

@@ -185,7 +185,7 @@ fn show(board: &Board, devices: &mut Devices, rate: u64) {
     devices.digits.show(board.digits.unwrap_or_else(rate));
 }
 
-/// Draws and shows a picture.
+/// Draws the program's next picture, and shows it from the next vertical blanking on.
 fn draw<P: Program>(
     program: &P,
     board: &mut Board,
@@ -253,7 +253,7 @@ impl core::fmt::Display for Error {
 /// State of the note to the user about slow drawing.
 #[derive(Default)]
 struct Notes {
-    /// Whether the note was printed.
+    /// Whether a note has been printed; only the first one is.
     is_noted: bool,
 }
 

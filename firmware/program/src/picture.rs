@@ -58,9 +58,9 @@ pub enum PictureError {
     Rectangles,
     /// A picture of lines, or of a mesh's edges, also has a mesh or a field; or a picture with a field has several meshes.
     Subjects,
-    /// The camera is out of range.
+    /// A number of the camera is out of range.
     View(ViewError),
-    /// A model matrix is out of range.
+    /// An entry of a model matrix is out of range.
     Matrix(MatrixError),
     /// The viewing parameters of the lines are invalid.
     Lines(ProgramError<'static>),
@@ -110,9 +110,9 @@ enum Main<'p> {
     Meshes,
     /// A field, with at most one mesh in it.
     Field(&'p Field, Quality),
-    /// The edges of a mesh.
+    /// The edges of a mesh, drawn as lines.
     Edges(MeshSubject<'p>, Edges),
-    /// Lines.
+    /// Lines, drawn by the line engine.
     Lines(WireframeSubject<'p>),
 }
 
@@ -261,7 +261,7 @@ impl<'p> Picture<'p> {
         self.set(Main::Field(field, quality))
     }
 
-    /// Shows the edges of a mesh.
+    /// Shows the edges of a mesh as lines.
     ///
     /// ```
     /// # use glint_program::core::mesh::Mesh;
@@ -360,7 +360,7 @@ impl<'p> Picture<'p> {
         added.map_err(|_| PictureError::Rectangles)
     }
 
-    /// The frame of this picture.
+    /// Converts the description to a frame for the renderer.
     ///
     /// # Errors
     /// [`PictureError::Subjects`].

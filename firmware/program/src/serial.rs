@@ -8,10 +8,10 @@ const RECEIVE_QUEUE: usize = 16 << 10;
 /// Capacity of the send queue in bytes.
 const SEND_QUEUE: usize = 4 << 10;
 
-/// The UART of the SoC.
+/// The type of the SoC's UART, with the capacities of its queues.
 pub type ConsoleUart = Uart<RECEIVE_QUEUE, SEND_QUEUE>;
 
-/// A writer to the UART.
+/// The type of a writer to the UART's send queue.
 pub type ConsoleWriter = Writer<'static, RECEIVE_QUEUE, SEND_QUEUE>;
 
 /// The UART, shared by its interrupt and the program.

@@ -50,7 +50,7 @@ impl Shapes {
         })
     }
 
-    /// The cube.
+    /// The built-in cube, which needs no memory.
     ///
     /// ```
     /// let shapes = glint_program::shapes::Shapes::new(&mut [])?;

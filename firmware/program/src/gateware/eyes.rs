@@ -13,7 +13,7 @@ use super::geometry::Cpu;
 use super::rendered::Rendered;
 use super::renderer::{GatewareRenderer, Output};
 
-/// The picture of the right eye.
+/// The picture of the right eye, and the state of drawing a stereo picture.
 pub struct RightEye {
     /// Colours of the right eye's picture in RGB565.
     pub colour: &'static mut [u16],

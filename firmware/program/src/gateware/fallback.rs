@@ -167,7 +167,7 @@ impl fmt::Display for Fallback {
 pub enum Unsupported {
     /// All options, because this gateware has no geometry passes.
     Geometry,
-    /// Clipping to the view volume.
+    /// Clipping of triangles to the view volume.
     Volume,
     /// [`Winding::Screen`](glint_core::colour::Winding::Screen).
     Winding,

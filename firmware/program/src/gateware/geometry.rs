@@ -51,7 +51,7 @@ pub struct Job<'a> {
 
 /// The state of the geometry passes.
 pub struct GeometryPasses {
-    /// Layout of the descriptors.
+    /// Layout of the descriptors of this gateware.
     layout: Layout,
     /// Whether the engine has geometry passes.
     has_geometry: bool,

@@ -5,7 +5,7 @@ use glint_model::FrameStats;
 
 use super::fallback::Unsupported;
 
-/// A frame drawn by the gateware.
+/// Cost and counts of a frame that the gateware has drawn.
 pub struct Rendered {
     /// Clock cycles from the first register write of the frame to the detection of its end.
     pub cycles: u64,

@@ -44,7 +44,7 @@ enum Stage {
     /// The geometry pass of the lines of a wireframe, or of a mesh's edges.
     Lines,
     Raster,
-    /// Passes of two quarters of a frame.
+    /// Passes of two quarters run at the same time.
     Quarters,
 }
 
@@ -52,7 +52,7 @@ enum Stage {
 #[derive(Default)]
 struct Start {
     cycles: u64,
-    /// `GatewareRenderer::waited`.
+    /// The value of `GatewareRenderer::waited` at the start.
     waited: u64,
     engine: Counters,
     raymarcher: raymarch::Counters,
@@ -71,9 +71,9 @@ pub struct GatewareRenderer {
     layout: Layout,
     /// Memory of the frame being drawn, and of the next quarter or, in a benchmark, of the next frame.
     buffers: [Buffers; 2],
-    /// The projected part of a wireframe.
+    /// Progress of the projection of a wireframe.
     projected: Projected,
-    /// Counts of the edges of the mesh.
+    /// Counts of the mesh's edges in the current frame.
     edges: EdgeStats,
     /// Address of frame buffer 0.
     first_frame_buffer: u32,
