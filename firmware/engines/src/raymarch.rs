@@ -18,15 +18,15 @@ pub enum Missing {
     Levels(u8),
     /// Flat fields (fields with plane faces) of this kind.
     Flat(Kind),
-    /// The spheres of a list.
+    /// A list of spheres.
     Round,
-    /// The spheres of a lattice.
+    /// A lattice of spheres.
     Lattice,
     /// Fillets between spheres and flat fields.
     Blend,
     /// Bent unions, which no build draws.
     Bend,
-    /// Cones.
+    /// Solid cones.
     Cone,
     /// Cones in lattices, which no build draws.
     ConeInLattice,
@@ -36,7 +36,7 @@ pub enum Missing {
     Highlight,
     /// Shadows on faces.
     Shadow,
-    /// Two eyes.
+    /// Rays of two eyes in one frame.
     Stereo,
 }
 

@@ -38,7 +38,7 @@ mod host {
     use std::boxed::Box;
     use std::thread_local;
 
-    /// A model of the bus.
+    /// A model of the bus, which answers all accesses on a host.
     pub trait Bus {
         /// Reads the word at `address`.
         fn read(&mut self, address: usize) -> u32;

@@ -1,6 +1,6 @@
-//! Memories of the SoC.
+//! The type that describes a memory of the SoC.
 
-/// A memory on the bus.
+/// Address and size of a memory on the bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Memory {
     /// Address of the first byte.

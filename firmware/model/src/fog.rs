@@ -71,7 +71,8 @@ impl Fog {
         SHARES.get(index.max(0) as usize).copied().unwrap_or(0)
     }
 
-    /// The colour of a pixel with the given depth code, in fog of this colour; all colours have the format of [`colour`](Self::colour).
+    /// Mixes the `colour` of a pixel with the fog's colour `fog`, by the share at the pixel's depth code. All colours have the format of
+    /// [`colour`](Self::colour).
     pub fn over(&self, fog: [u8; 3], colour: [u8; 3], code: u32) -> [u8; 3] {
         mixed(colour, fog, self.share(code))
     }

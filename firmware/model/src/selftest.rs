@@ -37,9 +37,9 @@ pub enum TestPicture {
     Line,
     /// A sponge of three levels: the raymarcher.
     Sponge,
-    /// Repeated cubes.
+    /// A field of repeated cubes.
     Cubes,
-    /// Two spheres.
+    /// A field of two spheres: the sphere unit of the raymarcher.
     Spheres,
     /// Repeated cubes for two eyes.
     Stereo,
@@ -96,7 +96,7 @@ impl TestPicture {
             Self::Spheres => SPHERES.is_built,
             Self::Stereo => STEREO.is_built,
             Self::TextureLine => TEXTURE.is_built && EDGES.is_built,
-            // A build without meshes draws no pair of frames.
+            // This picture is drawn as two frames, one per eye, which builds without meshes do not support.
             Self::TextureStereo => TEXTURE.is_built && STEREO.is_built && MESH.is_built,
         }
     }
@@ -238,7 +238,7 @@ fn rectangles(memory: &mut [u8]) -> Option<[Rectangle<'_>; 2]> {
     Some([small, large])
 }
 
-/// The eyes of all stereo pictures.
+/// The distance of the eyes, and the glasses, of all stereo pictures.
 const EYES: Stereo = Stereo {
     half_separation: Q32_32::lit("0.05"),
     zero_parallax: Q32_32::lit("2.5"),

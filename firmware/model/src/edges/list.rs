@@ -28,7 +28,7 @@ pub struct EdgeList<'m> {
     memory: &'m mut [u32],
     /// Address and length of the listed mesh; `None` for an empty list.
     mesh: Option<(usize, usize)>,
-    /// Number of edges.
+    /// Number of edges in the list.
     count: usize,
 }
 

@@ -1,4 +1,4 @@
-//! The constants of a frame.
+//! The constants of a frame, which are computed once before drawing.
 
 use glint_core::feature::{FIELD, FOG, MESH, MESH_IN_FIELD, OBJECT, SKY};
 use glint_core::light::MeshLighting;

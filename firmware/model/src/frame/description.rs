@@ -59,7 +59,7 @@ pub enum Subject<'a> {
     /// The edges of a mesh: [`Frame::draw`] draws only the faces, and [`Frame::draw_edges`] draws the edges. Create this subject with
     /// [`Subject::edges`].
     Edges(MeshSubject<'a>, Edges),
-    /// A distance field.
+    /// One distance field.
     Field(FieldSubject<'a>),
     /// A mesh and a distance field that hide each other by depth.
     MeshInField(MeshSubject<'a>, FieldSubject<'a>),

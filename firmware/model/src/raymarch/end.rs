@@ -2,7 +2,7 @@
 
 use glint_core::field::Surface;
 
-/// Result of a ray.
+/// Whether a ray hit a surface, and which one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
     /// The ray reached this surface.

@@ -80,7 +80,7 @@ impl Marching {
         self.entry.solid.unwrap_or_default().half()
     }
 
-    /// The spheres.
+    /// The spheres of the union.
     pub const fn spheres(&self) -> &FixedSpheres {
         &self.beside.spheres
     }

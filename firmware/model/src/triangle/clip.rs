@@ -19,7 +19,7 @@ pub const MAX_VERTICES: usize = 28;
 /// A vertex that the clipper interpolates. This is a trait, so that the code for triangles without textures does not interpolate texture
 /// coordinates.
 pub trait Cut: Copy + Default {
-    /// Its position and light.
+    /// Position and light of the vertex.
     fn vertex(&self) -> &CameraVertex;
     /// The vertex at the fraction `part`/`whole` of the way from `self` to `other`; `vertex` is the position and light of the result.
     fn towards(&self, other: &Self, vertex: CameraVertex, part: u64, whole: u64) -> Self;
@@ -37,7 +37,7 @@ impl Cut for CameraVertex {
 /// A vertex of a triangle with a texture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TexturedVertex {
-    /// Its position and light.
+    /// Position and light of the vertex.
     pub vertex: CameraVertex,
     /// Coordinates s and t of the texture, s16.16.
     pub coordinates: [i32; 2],

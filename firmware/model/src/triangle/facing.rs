@@ -17,7 +17,7 @@ pub enum Facing {
 }
 
 impl Facing {
-    /// Returns the other side.
+    /// Returns the opposite side.
     #[must_use]
     pub const fn opposite(self) -> Self {
         match self {

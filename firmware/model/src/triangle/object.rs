@@ -62,7 +62,7 @@ impl Placement {
         }
     }
 
-    /// The model matrix.
+    /// The model matrix of the placement.
     pub const fn matrix(&self) -> &Matrix {
         &self.matrix
     }

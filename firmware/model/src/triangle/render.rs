@@ -78,7 +78,7 @@ pub struct DrawnTriangle {
     pub index: u32,
     /// Snapped vertices, clockwise on the screen (2A > 0).
     pub vertices: [ScreenVertex; 3],
-    /// The visible side.
+    /// The side that the camera sees.
     pub facing: Facing,
     /// Colour of all pixels under flat shading.
     pub colour: Rgb565,
@@ -91,7 +91,7 @@ pub struct DrawnTriangle {
 /// Receives a triangle, its setup, and its texture if the triangle has one.
 pub type Emit<'b> = dyn FnMut(&DrawnTriangle, &Setup, Option<&Textured>) + 'b;
 
-/// Draws a mesh.
+/// Draws a mesh for a camera.
 ///
 /// `scratch` must hold the vertices of the largest chunk. The contents of `scratch` and of the frame buffer are overwritten. Unclipped
 /// triangles are drawn first, in the order of their indices, then clipped triangles. At equal depths the later triangle hides the earlier
@@ -160,7 +160,7 @@ pub fn trace_frame(
 /// A mesh of a frame: its frame constants and options.
 #[derive(Clone, Copy, Debug)]
 pub struct PreparedMesh<'a> {
-    /// The mesh.
+    /// The mesh to draw.
     pub mesh: Mesh<'a>,
     /// The frame constants of the mesh.
     pub frame: MeshSetup,
@@ -323,7 +323,7 @@ fn mark_outside(frame: &MeshSetup, chunk: &Chunk, scratch: &mut [Projected]) {
     }
 }
 
-/// Sets up the triangles of one mesh.
+/// Sets up the triangles of one mesh, and counts them.
 pub(super) struct Renderer<'a, 'b> {
     frame: MeshSetup,
     options: Options<'a>,

@@ -16,7 +16,7 @@ pub struct Oriented {
     /// The doubled area a = |2A| > 0, u40 with 16 fraction bits. It is at most the area of a square that contains the
     /// triangle.
     pub doubled_area: u64,
-    /// The visible side.
+    /// The side that the camera sees.
     pub facing: Facing,
 }
 
@@ -72,11 +72,11 @@ fn cross(v0: ScreenVertex, v1: ScreenVertex, v2: ScreenVertex) -> i64 {
 /// Bounding rows and columns of a triangle in the picture: `left`…`right` − 1 and `top`…`bottom` − 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bounds {
-    /// The first column.
+    /// The first column of the bounds.
     pub left: i32,
     /// One past the last column.
     pub right: i32,
-    /// The first row.
+    /// The first row of the bounds.
     pub top: i32,
     /// One past the last row.
     pub bottom: i32,

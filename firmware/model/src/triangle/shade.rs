@@ -53,9 +53,9 @@ impl Lit {
 #[repr(align(4))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Light {
-    /// Light for front faces.
+    /// Light if the front face is visible.
     pub front: Lit,
-    /// Light for back faces.
+    /// Light if the back face is visible.
     pub back: Lit,
 }
 

@@ -308,7 +308,7 @@ const INVERSES: [u32; 513] = {
     table
 };
 
-/// The inverse of a depth.
+/// The reciprocal of a depth, as a mantissa and an exponent.
 struct Inverse {
     /// 1 divided by the depth's mantissa in [1, 2), u0.18.
     mantissa: u32,

@@ -44,12 +44,12 @@ pub struct ScreenVertex {
 /// The result of the vertex stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Projected {
-    /// Inside the guard band.
+    /// The vertex is inside the guard band.
     Visible(ScreenVertex),
-    /// Nearer than the near plane, or behind the eye.
+    /// The vertex is nearer than the near plane, or behind the eye.
     Behind,
-    /// Beyond the near plane, but outside the guard band, or outside a view volume to which triangles are clipped. A position outside the
-    /// guard band may be saturated, so such a position only shows beyond which sides of the picture the vertex is.
+    /// The vertex is beyond the near plane, but outside the guard band, or outside a view volume to which triangles are clipped. A position
+    /// outside the guard band may be saturated, and then only shows beyond which sides of the picture the vertex is.
     BeyondGuard(ScreenVertex),
 }
 

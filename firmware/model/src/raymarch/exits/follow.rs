@@ -10,7 +10,7 @@ use super::setup::Exits;
 use super::spheres::Met;
 use crate::raymarch::State;
 
-/// The end of a ray.
+/// The end of a ray by exits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct End {
     /// A hit or a miss; no ray is undecided.

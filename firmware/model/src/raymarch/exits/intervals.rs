@@ -16,7 +16,7 @@ pub(super) const PERIOD: u32 = 18;
 /// The first cell beyond a repeated solid, at 2^11 field units.
 const LAST_CELL: i64 = 32;
 
-/// The rule of a solid.
+/// A rule that decides from the intervals of a point whether the point is in a solid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Rule {
     /// The inside of a box. Interval numbers: −1 below the box, 0 inside, 1 above.
@@ -94,13 +94,13 @@ pub struct Solid {
 /// Where a point is, relative to a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// In the solid.
+    /// The point is in the solid.
     Solid,
-    /// Above the solid along an axis: the ray cannot meet the solid any more.
+    /// The point is above the solid along an axis, so the ray cannot meet the solid any more.
     Gone,
-    /// In an empty prism.
+    /// The point is in this empty prism.
     Empty(Prism),
-    /// In the bounding box of a sphere.
+    /// The point is in the bounding box of a sphere.
     Box(Prism),
 }
 
@@ -116,7 +116,7 @@ pub struct Prism {
 /// The upper border of an interval.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Border {
-    /// The coordinate, s13.12.
+    /// Coordinate of the border along its axis, s13.12.
     pub at: i64,
     /// Number of the interval above the border.
     pub next: i32,

@@ -209,7 +209,7 @@ impl Exits {
         mirrored(3, parts.iter().sum::<i64>() + 1) + half
     }
 
-    /// The solid if it is an octahedron.
+    /// The solid if it is an octahedron, otherwise `None`.
     fn octahedron(&self) -> Option<Solid> {
         self.solid.filter(|solid| solid.rule == Rule::Octahedron)
     }

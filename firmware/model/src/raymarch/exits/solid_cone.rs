@@ -276,7 +276,7 @@ const fn power(exponent: i32) -> Scaled {
     Scaled::new(1, exponent)
 }
 
-/// The length of a vector.
+/// The length of a vector; 0 for the zero vector.
 fn length(vector: &Vector) -> Scaled {
     match product(vector, vector).cast_unsigned() {
         0 => Scaled::new(0, 0),
@@ -284,7 +284,7 @@ fn length(vector: &Vector) -> Scaled {
     }
 }
 
-/// The reciprocal of x, at least 1.
+/// The reciprocal of x, which must be at least 1.
 fn inverse(x: u64) -> Scaled {
     let root = Scaled::inverse_root(x, 0);
     root.by(root)

@@ -14,7 +14,7 @@ pub(super) type Vector = [i32; 3];
 /// Fraction bits of a unit vector.
 const UNIT: u32 = 30;
 
-/// The scalar product.
+/// The scalar product of two vectors.
 #[inline(never)]
 pub(super) fn product(a: &Vector, b: &Vector) -> i64 {
     dot(*a, *b)
@@ -110,7 +110,7 @@ impl Scaled {
         }
     }
 
-    /// The product.
+    /// The product of two numbers.
     pub(super) const fn by(self, factor: Self) -> Self {
         let product = self.mantissa as u64 * factor.mantissa as u64;
         // The product has 61 or 62 bits.

@@ -55,7 +55,7 @@ impl Words {
     }
 }
 
-/// The reciprocal of a number.
+/// The reciprocal of a number, as a mantissa and an exponent.
 ///
 /// Mantissas are close to 1, so that the gateware can compute x·mantissa as x + x·(mantissa − 1), with |mantissa − 1| below 1/2.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -20,7 +20,7 @@ pub enum Contents {
     /// A triangle, the triangle's colour under flat shading, and the texture if the triangle has one. The left and right bounds are rounded
     /// to groups.
     Triangle(Setup, Rgb565, Option<OfTexture>),
-    /// A piece of a line.
+    /// A piece of a line, which has one band.
     Piece(Piece),
     /// A damaged triangle, whose groups are not in the picture, and which is not drawn.
     Stray,
