@@ -32,15 +32,13 @@ impl Program for Flight {
         board.log(format_args!(
             "flight: turn the sensor, or press left and right"
         ));
-        let field = Field::parse("menger:3").expect("the field is in its ranges");
+        let field = Field::parse("menger:3").expect("the field is valid");
         let mut flight = Self {
             field,
             place: -END,
             yaw: Turns(0),
             speed: Q32_32::lit("0.3"),
-            view: Sphere::START
-                .view()
-                .expect("the start camera is in its ranges"),
+            view: Sphere::START.view().expect("the start camera is valid"),
         };
         flight.look(board);
         flight

@@ -74,7 +74,7 @@ impl Program for Bench {
                 black_box(kernel(black_box(call.wrapping_mul(0x0345_6789))));
             }
             *result = (cycles() - start) / u64::from(CALLS);
-            board.log(format_args!("{name}: {result} cycles a root"));
+            board.log(format_args!("{name}: {result} cycles per root"));
         }
     }
 

@@ -57,7 +57,7 @@ impl Fog {
         }
     }
 
-    /// Whether the engine can compute this fog, which it can only in perspective.
+    /// Whether the triangle engine supports this fog: only in perspective.
     pub const fn is_in_perspective(&self) -> bool {
         self.linear.is_none()
     }

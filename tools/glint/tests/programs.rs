@@ -173,7 +173,7 @@ fn the_bench_of_kernels_prints_its_cycles() {
     for name in ["library", "digit by digit", "newton"] {
         let line = board
             .inner()
-            .read_until("cycles a root\r\n", LIMIT)
+            .read_until("cycles per root\r\n", LIMIT)
             .unwrap();
         let cycles = line.rsplit_once(&format!("{name}: ")).unwrap().1;
         let cycles: u32 = cycles.split_once(' ').unwrap().0.parse().unwrap();

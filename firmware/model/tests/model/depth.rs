@@ -53,7 +53,7 @@ fn depth_error(vertices: [ScreenVertex; 3], size: (u32, u32)) -> f64 {
         let code = 64 * i128::from(code);
         assert!(
             low - 64 < code && code < high + 64,
-            "outside the vertices' depths"
+            "a depth code is outside the range of the vertices' depths"
         );
     }
     worst

@@ -57,7 +57,7 @@ fn shares_are_within_two_units_of_the_exact_sum() {
             }
         }
     }
-    println!("shares: at most {worst:.3}/256 off");
+    println!("largest error of a share: {worst:.3}/256");
     assert!(worst <= 1.5);
 }
 
@@ -112,6 +112,6 @@ fn equal_vertices_are_lit_as_flat_triangles() {
             lit += u32::from(flat.colour != Rgb565(0));
         }
     }
-    println!("{compared} vertices, {clipped} triangles clipped, {lit} lit");
+    println!("{compared} vertices compared, {clipped} triangles clipped, {lit} triangles lit");
     assert!(compared > 1500 && clipped > 200 && lit > 500);
 }

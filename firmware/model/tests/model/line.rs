@@ -183,7 +183,7 @@ fn edges_with_bias_lie_in_front_of_their_face() {
             drawn += count;
         }
     }
-    println!("{drawn} pixels of edges, {hidden_without} hidden without bias");
+    println!("{drawn} pixels of edges, of which {hidden_without} would be hidden without bias");
     assert!(drawn > 50_000 && hidden_without > 1_000);
 }
 

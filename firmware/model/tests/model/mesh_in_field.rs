@@ -82,7 +82,7 @@ fn faces_of_both_in_one_plane_have_the_same_depth() {
         apart.sort_unstable();
         let at = |part: f64| apart[((apart.len() - 1) as f64 * part) as usize];
         println!(
-            "{field}: {} pixels, depth codes apart by {} (median), {} (99 %), {} (99.9 %), {} at most",
+            "{field}: {} pixels, difference of depth codes: median {}, 99 % {}, 99.9 % {}, maximum {}",
             apart.len(),
             at(0.5),
             at(0.99),

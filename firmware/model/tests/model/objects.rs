@@ -111,7 +111,7 @@ fn vertices_of_objects_against_f64() {
             }
         }
         println!(
-            "{width}x{height}: {count} vertices at most {worst:.3}/256 pixel off, {share:.3} of the bound, depth within {depth:.3} codes; {halved} setups halved"
+            "{width}x{height}: {count} vertices, error {worst:.3}/256 pixel ({share:.3} of the bound), depth {depth:.3} codes; {halved} setups halved"
         );
         assert!(count > 40_000 && halved > 500 && share <= 1.0 && depth <= 1.0);
     }
@@ -157,7 +157,7 @@ fn light_on_objects_against_f64() {
         worst[usize::from(same)] = worst[usize::from(same)].max(error);
     }
     println!(
-        "intensity: {:.3}/256 off with the normals turned, {:.3}/256 with the light turned",
+        "largest error of the intensity: {:.3}/256 with transformed normals, {:.3}/256 with the light rotated",
         worst[0], worst[1]
     );
     assert!(worst.iter().all(|&worst| worst <= 0.53));

@@ -110,7 +110,7 @@ fn places_and_depths_against_f64() {
                 count += 1;
             }
             println!(
-                "±{reach}, {}x{}: {count} places at most {worst:.3}/256 pixel off, {narrow:.3} with a width below 0.1, {share:.3} of the bound; depth within {depth:.3}/64 code",
+                "±{reach}, {}x{}: {count} positions, error {worst:.3}/256 px, {narrow:.3} for a width below 0.1, {share:.3} of the bound; depth {depth:.3}/64 code",
                 size.0, size.1
             );
             assert!(share <= 1.0 && depth <= 1.01);
@@ -198,7 +198,7 @@ fn nearer_vertices_have_larger_codes() {
             fewest = fewest.min(codes as u32);
         }
     }
-    println!("at least {fewest} codes");
+    println!("at least {fewest} codes used");
     assert!(fewest >= 131_000);
 }
 
@@ -248,7 +248,7 @@ fn objects_against_f64() {
         }
     }
     println!(
-        "{count} vertices at most {worst:.3}/256 pixel off, {share:.3} of the bound, depth within {depth:.3}/64 code; {halved} setups halved"
+        "{count} vertices, largest error {worst:.3}/256 pixel ({share:.3} of the bound), depth {depth:.3}/64 code; {halved} setups halved"
     );
     assert!(count > 10_000 && halved > 100 && share <= 1.0 && depth <= 8.0);
 }
@@ -368,6 +368,6 @@ fn light_against_f64() {
             }
         }
     }
-    println!("{pixels} pixels, light at most {worst:.4} steps off");
+    println!("{pixels} pixels, largest error of the light {worst:.4} steps");
     assert!(pixels > 500_000 && worst <= 0.5 + 1.0 / 31.0 + 0.001);
 }

@@ -145,7 +145,7 @@ fn fields_of_view_against_f64() {
                 }
             }
             println!(
-                "{degrees} degrees, {width}x{height}: {} places, 1/256 px off: {:.3} on the screen, {:.3} in the guard band",
+                "{degrees} degrees, {width}x{height}: {} positions, error in 1/256 pixel: {:.3} on the screen, {:.3} in the guard band",
                 worst.count, worst.screen, worst.guard
             );
             assert!(worst.count > 1_000);
@@ -198,7 +198,7 @@ fn depths_against_f64() {
             "K {k} for {nearest}"
         );
     }
-    println!("w: at most {worst:.3} of its units (1/64 code) from K/z");
+    println!("largest difference of w and K/z: {worst:.3}/64 code");
     assert!(worst <= 4.5);
 }
 

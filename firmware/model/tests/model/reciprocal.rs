@@ -36,7 +36,7 @@ fn every_mantissa() {
     }
     let rms = (sum / f64::from(1 << 23)).sqrt();
     println!(
-        "recip: at most {worst:.4} units (at {worst_at}), RMS {rms:.4}; e0' in {e0_range:?}, e1' in {e1_range:?}"
+        "error of the reciprocal: at most {worst:.4} units (at {worst_at}), RMS {rms:.4}; e0' in {e0_range:?}, e1' in {e1_range:?}"
     );
     assert!(worst <= 0.51, "{worst} units at {worst_at}");
     assert_eq!(recip(1 << 23), (1 << 24) - 1);

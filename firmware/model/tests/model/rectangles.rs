@@ -200,7 +200,7 @@ fn positions_are_those_of_pixel_centres() {
             pixels += 1;
         }
     }
-    println!("{pixels} pixels: at most {worst:.4?} texels off");
+    println!("{pixels} pixels, largest error in texels {worst:.4?}");
     assert!(pixels > 50_000);
     assert!(worst[0] < 1.0 / 128.0 && worst[1] < 1.0 / 27.0, "{worst:?}");
 }

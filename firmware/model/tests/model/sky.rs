@@ -39,7 +39,7 @@ fn heights_of_random_cameras() {
                 }
             }
         }
-        println!("half width {half_width}: height within {worst:.2e}");
+        println!("half width {half_width}: largest error of the height {worst:.2e}");
         // The height of the middle has an error of at most one unit, and each of up to 80 groups and 360 lines adds at most half a unit.
         assert!(
             worst < 221.0 / f64::from(1 << 23),
@@ -77,7 +77,7 @@ fn heights_of_fixed_gradients() {
                 worst = worst.max((found / f64::from(1 << 23) - (1.0 - place)).abs());
             }
         }
-        println!("{size}: height within {worst:.2e}");
+        println!("{size}: largest error of the height {worst:.2e}");
         // Each of up to 360 lines from the middle adds an error of at most half a unit.
         assert!(worst < 181.0 / f64::from(1 << 23), "{size}");
     }

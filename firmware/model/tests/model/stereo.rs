@@ -63,7 +63,7 @@ fn eyes_against_f64() {
                 }
             }
         }
-        println!("{size:?}: {count} positions, {worst:.3}/256 pixel off");
+        println!("{size:?}: {count} positions, largest error {worst:.3}/256 pixel");
         assert!(count > 1_000 && worst <= bound, "{count} {worst}");
     }
 }
@@ -113,7 +113,7 @@ fn eyes_see_shifted_pictures_of_one_eye() {
             differ +=
                 usize::from(seen.colour[320 * y + x as usize] != alone.colour[320 * y + aside]);
         }
-        println!("{differ} pixels differ of {}", seen.covered());
+        println!("{differ} of {} pixels differ", seen.covered());
         assert!(seen.covered() > 4_000 && 100 * differ < seen.covered());
     }
     let [left, right] = [eyes.left, eyes.right].map(|eye| Picture::of_frame(&eye).colour);

@@ -127,7 +127,7 @@ fn positions_and_levels_are_those_of_exact_perspective() {
             pixels += 1;
         }
     }
-    println!("{pixels} pixels: at most {worst:.4} texels of 1024 off");
+    println!("{pixels} pixels, largest error {worst:.4} texels of 1024");
     assert!(pixels > 10_000);
     assert!(worst < 1.0 / 16.0, "{worst}");
 }
@@ -189,7 +189,9 @@ fn a_floor_has_the_texels_that_rays_hit() {
             }
             hits += 1;
         }
-        println!("{hits} pixels, {wrong} coordinates in the next texel, at most {worst:.4} off");
+        println!(
+            "{hits} pixels, {wrong} coordinates in the neighbouring texel, largest error {worst:.4} texels"
+        );
         assert!(hits > 50_000 && wrong < hits / 20, "{hits} {wrong}");
         // A pixel near the horizon is many texels wide, and the position of its centre has an error of up to 2^-7 pixel.
         assert!(worst < 0.7, "{worst}");

@@ -116,7 +116,7 @@ fn vertices_against_f64() {
         }
     }
     println!(
-        "{vertices} vertices, at most {worst:.3}/256 pixel off, polygons of up to {most} vertices, {unlike} unlike"
+        "{vertices} vertices, largest error {worst:.3}/256 pixel, polygons of up to {most} vertices, {unlike} unlike polygons"
     );
     assert!(vertices > 60_000 && most <= 9 && unlike == 0);
     assert!(worst <= 1.0, "{worst}");
@@ -159,7 +159,7 @@ fn neighbours_have_no_cracks() {
         let fits = forward(left) && backward(right) || backward(left) && forward(right);
         cracks += u32::from(!fits);
     }
-    println!("{pairs} pairs, {cut} with a cut edge, {cracks} cracks");
+    println!("{pairs} pairs of triangles, {cut} with a clipped edge, {cracks} cracks");
     assert!(cracks == 0 && cut > pairs / 10);
 }
 

@@ -86,7 +86,7 @@ fn places_against_f64() {
             }
         }
         println!(
-            "{projection}: {count} places at most {worst:.3?}/256 pixel off, in 1280x720 the second"
+            "{projection}: {count} positions, largest error in 1/256 pixel, for smaller sizes and for 1280x720: {worst:.3?}"
         );
         assert!(count > 10_000 && worst.into_iter().all(|worst| worst <= 2.0));
     }
@@ -165,7 +165,7 @@ fn rays_and_the_sky_against_f64() {
         }
     }
     println!(
-        "rays within {:.1e}, heights within {:.1e}",
+        "largest error of rays {:.1e}, of heights {:.1e}",
         worst[0], worst[1]
     );
     assert!(worst[0] <= 1e-5 && worst[1] < 221.0 * 0.5f64.powi(23));

@@ -38,7 +38,7 @@ fn draw(segments: &str, size: Size, keys: &[Key]) -> (Picture, WireframeStats) {
         edges: None,
     } = stats.unwrap()
     else {
-        panic!("expected the counts of a wireframe alone");
+        panic!("expected only the counts of a wireframe");
     };
     assert_eq!(calls, stats.segments.div_ceil(16));
     (picture, stats)

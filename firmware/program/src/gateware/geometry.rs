@@ -88,7 +88,7 @@ impl GeometryPasses {
         self.unsupported
     }
 
-    /// Whether no further pass has been prepared.
+    /// Whether the running pass is the last one, because no further pass has been prepared.
     pub const fn is_last(&self) -> bool {
         self.prepared.is_none()
     }

@@ -36,7 +36,7 @@ pub enum Rule {
     /// Boxes, or spheres in cubes, in every cell of a lattice. Interval numbers: 2·cell in a box, 2·cell + 1 in the gap above the box. An
     /// axis along which the side of a box equals the period has no gaps. The solid ends before cell `LAST_CELL`.
     Repeated {
-        /// Whether each box contains a sphere whose diameter is the box's side, in place of a solid.
+        /// Whether each box is replaced by a sphere with the box's side as diameter.
         round: bool,
     },
     /// The octahedron: the intersection of four slabs perpendicular to its diagonals, with the interval numbers of a box. An octahedron is
