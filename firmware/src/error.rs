@@ -57,9 +57,9 @@ pub enum CommandError<'l> {
     Features(&'static BuiltIn),
     /// An option of the scene cannot be set.
     Setting(SettingError<'l>),
-    /// `bench field` needs a shown field.
+    /// `bench field` requires that a field is shown.
     NoField,
-    /// `bench triangle` needs triangles, but a field is shown.
+    /// `bench triangle` requires triangles, but a field is shown.
     FieldShown,
     /// The gateware cannot draw the frame.
     Engine(Fallback),

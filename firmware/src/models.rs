@@ -70,11 +70,11 @@ impl Content {
 /// Reason why a name is not allowed for an upload.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NameError {
-    /// The name is the name of a scene.
+    /// A scene has this name.
     Scene,
     /// The name is the keyword for the own textures of meshes.
     Own,
-    /// The name is the name of an upload of the other kind.
+    /// An upload of the other kind (mesh or texture) has this name.
     OtherKind,
     /// There are already [`MAX_UPLOADS`] uploads with other names.
     Full,
@@ -194,7 +194,7 @@ impl Models {
         }
     }
 
-    /// The uploaded wireframe program, or else the built-in one.
+    /// The uploaded wireframe program, or else the built-in program.
     pub fn program(&self) -> &Program<'_> {
         self.uploaded_program().unwrap_or(&self.cube_program)
     }
@@ -204,13 +204,13 @@ impl Models {
         self.program.as_ref().map(|(program, _)| program)
     }
 
-    /// Names and meshes of the uploaded meshes.
+    /// The uploaded meshes with their names.
     pub fn meshes(&self) -> impl Iterator<Item = (&str, Mesh<'_>)> + Clone {
         let uploads = self.uploads.iter();
         uploads.filter_map(|upload| Some((upload.name.as_str(), upload.mesh()?)))
     }
 
-    /// Names and textures of the uploaded textures.
+    /// The uploaded textures with their names.
     pub fn textures(&self) -> impl Iterator<Item = (&str, Texture<'_>)> + Clone {
         let uploads = self.uploads.iter().filter(|_| TEXTURE.is_built);
         uploads.filter_map(|upload| Some((upload.name.as_str(), upload.texture()?)))
@@ -300,7 +300,7 @@ impl Models {
         self.arena.lend(length)
     }
 
-    /// Takes back memory that [`lend`](Self::lend) has lent. The bytes stay unchanged in the staging memory.
+    /// Takes back memory that [`lend`](Self::lend) has lent. The bytes in the staging memory are unchanged.
     pub fn give_back(&mut self, loan: Loan) {
         self.arena.give_back(loan);
     }

@@ -60,7 +60,7 @@ enum Stage {
 }
 
 impl Transfer {
-    /// An upload, announced by `manifest`, into memory of its length.
+    /// Creates an upload of the data that `manifest` announces. `memory` must have the announced length.
     pub fn upload(
         purpose: Purpose,
         manifest: Manifest,

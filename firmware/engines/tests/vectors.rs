@@ -110,6 +110,6 @@ fn vectors_of_the_package() {
         .map_or((0, ""), |(number, (_, wanted))| (number + 1, wanted));
     assert!(
         committed == text,
-        "{FILE}: expected line {number}: {line:?}; `GLINT_UPDATE=1 cargo test -p glint-engines --test vectors` replaces it"
+        "{FILE}: expected line {number}: {line:?}; `GLINT_UPDATE=1 cargo test -p glint-engines --test vectors` updates the file"
     );
 }

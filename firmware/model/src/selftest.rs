@@ -221,8 +221,8 @@ const PICTURE: Picture = Picture {
 #[repr(align(16))]
 struct Aligned([u8; 160]);
 
-/// The rectangles of all pictures with textures, whose texture is drawn in `memory`: one with a texel on each pixel, and a mirrored and
-/// enlarged part that leaves the picture.
+/// The rectangles of all pictures with textures: the first has one texel per pixel, and the second shows a mirrored and enlarged part, and
+/// extends beyond the picture. Their texture is drawn in `memory`.
 fn rectangles(memory: &mut [u8]) -> Option<[Rectangle<'_>; 2]> {
     texture::draw(memory, &PICTURE)?;
     let texture = Texture::new_checked(memory).ok()?;

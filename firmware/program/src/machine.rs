@@ -253,7 +253,7 @@ impl core::fmt::Display for Error {
 /// State of the note to the user about slow drawing.
 #[derive(Default)]
 struct Notes {
-    /// Whether a note has been printed; only the first one is.
+    /// Whether a note has been printed; only the first note is printed.
     is_noted: bool,
 }
 

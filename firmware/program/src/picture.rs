@@ -118,7 +118,7 @@ enum Main<'p> {
 
 /// The description of a picture: camera, light, and what the picture shows.
 ///
-/// A new picture has the board's largest size. It has four samples a pixel if the gateware draws them. The light is white and comes from
+/// A new picture has the board's largest size. It has four samples per pixel if the gateware supports them. The light is white, and is at
 /// the camera. The background of meshes is a grey gradient.
 ///
 /// ```

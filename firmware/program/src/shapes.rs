@@ -9,7 +9,7 @@ use glint_scene::CUBE;
 
 use crate::cube;
 
-/// The built-in meshes that have been made, and the memory for the others.
+/// The built-in meshes that have been made, and the memory for those that have not.
 ///
 /// ```
 /// # let memory = vec![0; 6 * glint_program::core::shape::MAX_BYTES].leak();

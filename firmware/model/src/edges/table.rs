@@ -13,7 +13,7 @@ pub struct Table<'m> {
     slots: &'m mut [u32],
     /// The keys of the edges, by edge number.
     keys: &'m mut [[u32; KEY_WORDS]],
-    /// Number of edges.
+    /// Number of edges in the table.
     count: usize,
 }
 
@@ -40,7 +40,7 @@ impl<'m> Table<'m> {
         })
     }
 
-    /// Number of edges.
+    /// Returns the number of edges in the table.
     pub const fn len(&self) -> usize {
         self.count
     }
@@ -80,7 +80,7 @@ mod tests {
     fn a_table_has_each_edge_once_until_it_is_full() {
         let mut memory = [7; 64];
         let mut table = Table::new(&mut memory, 1000).unwrap();
-        // 16 slots, one of which stays empty, and memory for 16 edges.
+        // 16 slots, one of which remains empty, and memory for 16 edges.
         for number in 0..15 {
             let key = [number & 3, number >> 2, 5];
             assert_eq!(table.insert(key), Some((number, true)));

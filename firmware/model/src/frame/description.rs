@@ -63,7 +63,7 @@ pub enum Subject<'a> {
     Field(FieldSubject<'a>),
     /// A mesh and a distance field that hide each other by depth.
     MeshInField(MeshSubject<'a>, FieldSubject<'a>),
-    /// Several meshes, each with its own model matrix. At equal depths the later object covers the earlier one.
+    /// Several meshes, each with its own model matrix. At equal depths the later object hides the earlier object.
     Objects(&'a [Object<'a>]),
     /// A program of the wireframe simulator.
     Wireframe(WireframeSubject<'a>),

@@ -21,7 +21,8 @@ pub(super) struct Directions {
 }
 
 impl Directions {
-    /// Computes the directions for the cameras of two eyes, which differ only in position and shift, or for one camera given twice.
+    /// Computes the directions for the cameras of two eyes, which differ only in position and shift. For one eye, pass the same camera
+    /// twice.
     pub fn new(eyes: &[View; 2], window: Window) -> Self {
         let ([view, _], [width, height]) = (eyes, window.picture());
         // The quotient of a length in the window and its number of pixels, both doubled; the dividend is below 2^54.
@@ -76,8 +77,8 @@ impl Directions {
 /// Checks that a field can be drawn with this camera.
 ///
 /// # Errors
-/// [`RenderError::Orthographic`], [`RenderError::HalfWidth`] for a camera that is too narrow or too wide, and [`RenderError::Sides`] for
-/// one whose window is too low, too high or too far from its axis.
+/// [`RenderError::Orthographic`], [`RenderError::HalfWidth`] for a camera that is too narrow or too wide, and [`RenderError::Sides`] for a
+/// camera whose window is too low, too high or too far from its axis.
 pub(super) fn check(view: &View) -> Result<(), RenderError> {
     if view.projection() == Projection::Orthographic {
         return Err(RenderError::Orthographic);

@@ -227,7 +227,7 @@ pub const WEIGHT: u32 = (1 << 23) - HALF_CODE;
 /// The input of the walker, which finds the pixels of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Setup {
-    /// Bounding rows and columns.
+    /// Rows and columns that contain all covered pixels.
     pub bounds: Bounds,
     /// The column of the start pixel, in the bounds and near the topmost vertex. The row of the start pixel is the
     /// first row of the bounds.

@@ -30,7 +30,7 @@ pub enum Fallback {
     RectanglesInFog,
     /// The triangle engine supports textures only with flat shading.
     SmoothTextures,
-    /// The frame has more textures than the triangle engine can number.
+    /// The frame has more textures than the table of the triangle engine can hold.
     TooManyTextures,
     /// This gateware is built without a depth buffer.
     NoDepths,

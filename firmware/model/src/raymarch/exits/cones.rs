@@ -39,7 +39,7 @@ pub(super) const DISTANCE_OFFSET: i32 = 24;
 /// Largest exponent of a cone's distance; the smallest is 0.
 const MOST_DISTANCE: i32 = 15;
 
-/// Largest number of cones: two for each sphere, three for a solid cone with at most one sphere beside it.
+/// Largest number of cones: two for each sphere, or three for a solid cone and two for at most one sphere next to it.
 const MAX_CONES: usize = if SPHERES.is_built { 2 * MAX_SPHERES } else { 0 };
 
 /// The cones in which an eye sees the spheres of a list, in the order of the list.
