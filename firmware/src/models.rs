@@ -85,7 +85,7 @@ pub enum NameError {
 pub enum UploadError {
     /// The data are not a mesh or a texture, or a mesh of too many triangles.
     Content(Deviation),
-    /// The mesh of this name, which a texture would replace, is the mesh of the object with this number, from 1.
+    /// A texture would replace a mesh that the object with this number, from 1, shows.
     Object(u32),
 }
 

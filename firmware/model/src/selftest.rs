@@ -213,7 +213,7 @@ const PICTURE: Picture = Picture {
     is_cut_out: true,
     is_atlas: true,
     blend: Blend::ALL[5],
-    // The sum is truncated to 16 bits: the channels need not have an order, only different values.
+    // The sum is truncated to 16 bits. Any colours are suitable, as long as neighbouring texels differ.
     texel: |[x, y]| ((x + y) % 7 != 0).then_some(Rgb565((x * 0x1F03 + y * 0x0841) as u16)),
 };
 

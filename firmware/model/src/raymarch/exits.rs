@@ -1,9 +1,9 @@
 //! Rays by exits: each step advances a ray to the exit of a whole empty prism. Hits are exact, because no distance is compared with a
 //! threshold (docs/raymarch-exits.md).
 //!
-//! The planes of a solid cut each axis into intervals. A field is a rule that maps the three intervals of a point to the answer whether the
-//! point is in the solid, or else to the planes that bound an empty prism around the point. An *evaluation* moves the ray to the exit of
-//! this prism. A ray therefore ends after a few evaluations, on a plane of the solid, exactly up to the rounding of one product.
+//! The planes of a solid cut each axis into intervals. A field is a rule for the three intervals of a point: either the point is in the
+//! solid, or the rule returns the planes that bound an empty prism around the point. An *evaluation* moves the ray to the exit of this
+//! prism. A ray therefore ends after a few evaluations, on a plane of the solid, exactly up to the rounding of one product.
 //!
 //! A ray is o + T·D. The direction D is not normalised, so T is a depth. All solids are symmetric about the origin, so an axis along which
 //! a ray points down can be mirrored. All rays then point up, and every exit is at the upper border of an interval.
