@@ -134,16 +134,14 @@ pub struct Output {
 
 impl fmt::Write for Output {
     fn write_str(&mut self, text: &str) -> fmt::Result {
-        let mut send = |text: &str| {
-            self.writer
-                .write_all(text.as_bytes())
-                .map_err(|_| fmt::Error)
-        };
-        let mut lines = text.split('\n');
-        send(lines.next().unwrap_or_default())?;
-        for line in lines {
-            send("\r\n")?;
-            send(line)?;
+        for line in text.as_bytes().split_inclusive(|byte| *byte == b'\n') {
+            let sent = match line.strip_suffix(b"\n") {
+                Some(line) => {
+                    (self.writer.write_all(line)).and_then(|()| self.writer.write_all(b"\r\n"))
+                }
+                None => self.writer.write_all(line),
+            };
+            sent.map_err(|_| fmt::Error)?;
         }
         Ok(())
     }

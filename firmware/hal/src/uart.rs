@@ -214,6 +214,28 @@ impl embedded_io::Error for TimedOut {
     }
 }
 
+/// Calls `transfer` until it has transferred bytes, and returns their number. Most calls transfer bytes at once; these do not compute a
+/// deadline, which takes a 64-bit division.
+fn wait(
+    clock: Clock,
+    timeout: Duration,
+    mut transfer: impl FnMut() -> usize,
+) -> Result<usize, TimedOut> {
+    let mut deadline = None;
+    loop {
+        match transfer() {
+            0 if deadline
+                .get_or_insert_with(|| clock.after(timeout))
+                .passed() =>
+            {
+                return Err(TimedOut);
+            }
+            0 => {}
+            count => return Ok(count),
+        }
+    }
+}
+
 /// Reader of the bytes that a [`Uart`] receives.
 pub struct Reader<'u, const RX: usize, const TX: usize> {
     uart: &'u Uart<RX, TX>,
@@ -230,14 +252,7 @@ impl<const RX: usize, const TX: usize> Read for Reader<'_, RX, TX> {
         if buffer.is_empty() {
             return Ok(0);
         }
-        let deadline = self.clock.after(self.timeout);
-        loop {
-            match self.uart.receive(buffer) {
-                0 if deadline.passed() => return Err(TimedOut),
-                0 => {}
-                count => return Ok(count),
-            }
-        }
+        wait(self.clock, self.timeout, || self.uart.receive(buffer))
     }
 }
 
@@ -263,14 +278,7 @@ impl<const RX: usize, const TX: usize> Write for Writer<'_, RX, TX> {
         if bytes.is_empty() {
             return Ok(0);
         }
-        let deadline = self.clock.after(self.timeout);
-        loop {
-            match self.uart.send(bytes) {
-                0 if deadline.passed() => return Err(TimedOut),
-                0 => {}
-                count => return Ok(count),
-            }
-        }
+        wait(self.clock, self.timeout, || self.uart.send(bytes))
     }
 
     /// Waits until the last byte has left the queues; the line may still be sending this byte.
