@@ -40,24 +40,19 @@ fn the_soc_draws_objects() {
     let places = OBJECTS.into_iter().chain([STRETCHED]);
     let mut objects: Vec<_> = places.map(|place| object(&mesh, place)).collect();
     let all = OBJECTS.len();
-    let usual = [0, 1].map(|view| (view, Clip::Guard, Winding::Mesh));
+    let usual = |view| (view, Clip::Guard, Winding::Mesh);
     let far = U8_28::lit("2.5");
-    // Geometry passes do not support these options, so the CPU computes all descriptors.
-    let by_cpu = [
-        (0, Clip::View { far }, Winding::Mesh),
-        (1, Clip::Guard, Winding::Screen),
-    ];
-    // One object, all objects that the gateware draws, and one object more; in two sizes, and with
-    // the options.
-    let usual_at = |count, size| usual.map(|options| (count, size, options));
+    // One object, all objects that the gateware draws, and one object more, from both cameras; a second size; and options that
+    // geometry passes do not support, so the CPU computes all descriptors.
     let frames = [
-        usual_at(1, Size::W320),
-        usual_at(all, Size::W320),
-        usual_at(all + 1, Size::W320),
-        usual_at(all + 1, Size::W640),
-        by_cpu.map(|options| (all + 1, Size::W320, options)),
+        (1, Size::W320, usual(0)),
+        (all, Size::W320, usual(1)),
+        (all + 1, Size::W320, usual(0)),
+        (all + 1, Size::W640, usual(1)),
+        (all + 1, Size::W320, (0, Clip::View { far }, Winding::Mesh)),
+        (all + 1, Size::W320, (1, Clip::Guard, Winding::Screen)),
     ];
-    for (count, size, (view, clip, winding)) in frames.into_iter().flatten() {
+    for (count, size, (view, clip, winding)) in frames {
         for object in &mut objects {
             object.subject.winding = winding;
             object.subject.clip = clip;
