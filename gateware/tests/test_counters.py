@@ -4,9 +4,9 @@ import random
 
 from litex.gen import LiteXModule
 from litex.soc.interconnect.csr_bus import CSRBank, Interface
-from migen import run_simulation
 
 from glint_soc.counters import Counters
+from simulation import run_simulation
 
 
 class _Block(LiteXModule):

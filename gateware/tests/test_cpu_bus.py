@@ -4,10 +4,11 @@ import random
 
 import pytest
 from litex.soc.interconnect import wishbone
-from migen import Module, passive, run_simulation
+from migen import Module, passive
 
 from glint_soc.cpu_bus import BusSelections, CpuBus
 from memory_bench import BASE, WORDS, access, bench, merged
+from simulation import run_simulation
 
 _TRANSACTIONS = 300
 _LINE = 8

@@ -1,8 +1,9 @@
 """Test of the digit displays: the pins as a function of the registers."""
 
-from migen import Record, run_simulation
+from migen import Record
 
 from glint_soc.digits import DIGITS, Digits
+from simulation import run_simulation
 
 _LAYOUT = [(f"{side}_{kind}_n", bits) for side in ("left", "right") for kind, bits in (("digits", DIGITS), ("segments", 8))]
 _TURN = 1 << 16

@@ -4,9 +4,9 @@ import random
 
 import pytest
 from litex.soc.interconnect import wishbone
-from migen import run_simulation
 
 from memory_bench import BASE, WORDS, access, bench, merged
+from simulation import run_simulation
 
 TRANSACTIONS = 250
 

@@ -8,10 +8,11 @@ from litedram.core.bankmachine import BankMachine
 from litedram.core.controller import ControllerSettings
 from litedram.modules import MT41K64M16
 from litedram.phy.model import get_sdram_phy_settings
-from migen import Module, run_simulation
+from migen import Module
 
 from glint_soc.memory_bank import MemoryBank
 from glint_soc.memory_refresh import MemoryRefresher
+from simulation import run_simulation
 
 _CLOCK = 81.25e6
 _ALIGNMENT = 3

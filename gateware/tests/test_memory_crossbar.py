@@ -4,10 +4,11 @@ import random
 from collections import deque
 
 import pytest
-from migen import passive, run_simulation
+from migen import passive
 
 from crossbar import connect
 from glint_soc.memory_crossbar import MemoryCrossbar
+from simulation import run_simulation
 
 _BANKS = 4
 _COLUMNS = 16

@@ -3,12 +3,13 @@
 import random
 
 from litedram.dfii import DFIInjector
-from migen import Cat, Module, run_simulation
+from migen import Cat, Module
 from migen.genlib.record import DIR_M_TO_S
 
 from crossbar import connect
 from glint_soc.memory_crossbar import MemoryCrossbar
 from glint_soc.memory_injector import MemoryInjector
+from simulation import run_simulation
 
 _ADDRESS, _BANK, _DATA, _PHASES = 13, 3, 32, 4
 

@@ -4,9 +4,10 @@ import random
 from types import SimpleNamespace
 
 from litedram.phy.model import SDRAMPHYModel
-from migen import Module, run_simulation
+from migen import Module
 
 from glint_soc.memory_model import MemoryModel
+from simulation import run_simulation
 
 CYCLES = 400
 SEED = 1

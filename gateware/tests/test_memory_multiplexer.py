@@ -11,11 +11,11 @@ from litedram.modules import MT48LC16M16
 from litedram.phy.dfi import Interface
 from litedram.phy.gensdrphy import get_default_cl
 from litex.gen import LiteXModule
-from migen import run_simulation
 
 from glint_soc.memory_bank import MemoryBank
 from glint_soc.memory_multiplexer import MemoryMultiplexer
 from glint_soc.memory_refresh import MemoryRefresher
+from simulation import run_simulation
 
 _BANKS = 4
 _PENDING = 5

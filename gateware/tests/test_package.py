@@ -13,11 +13,12 @@ import sys
 import pytest
 import yaml
 from litedram.common import LiteDRAMNativePort
-from migen import passive, run_simulation
+from migen import passive
 
 from glint_soc import generate, packages, vectors
 from glint_soc.axi_ports import AxiPorts
 from resources.tools import run_yosys
+from simulation import run_simulation
 from verilate.programs import GATEWARE, digest, files_below, is_current, run_verilator
 
 _EXAMPLES = GATEWARE / "examples"

@@ -6,11 +6,11 @@ import pytest
 from litex.gen import LiteXModule
 from litex.soc.interconnect.csr import CSRStorage
 from litex.soc.interconnect.csr_bus import CSRBank, Interface
-from migen import run_simulation
 
 from glint_soc.parameters import Parameter, PassParameters
 from glint_soc.register_bus import RegisterStage
 from glint_soc.register_map import CSR_PAGING
+from simulation import run_simulation
 
 _WINDOW = 3
 

@@ -5,11 +5,11 @@ import random
 from litex.gen import LiteXModule
 from litex.soc.interconnect.csr import CSRStatus, CSRStorage
 from litex.soc.interconnect.csr_bus import CSRBank, Interface
-from migen import run_simulation
 
 from glint_soc.register_bus import RegisterBus
 from glint_soc.register_map import CSR_PAGING
 from memory_bench import access
+from simulation import run_simulation
 
 # Windows of the two banks. LiteX's bridge leaves the address 0, in the first window, between accesses.
 _WINDOWS = (0, 9)

@@ -3,10 +3,11 @@
 import random
 
 import pytest
-from migen import Module, run_simulation
+from migen import Module
 from migen.genlib import roundrobin
 
 from glint_soc.round_robin import RoundRobin
+from simulation import run_simulation
 
 
 @pytest.mark.parametrize("count", (1, 2, 3, 11))

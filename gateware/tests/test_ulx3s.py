@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 import pytest
 from litex.soc.integration.builder import Builder
-from migen import Signal, run_simulation
+from migen import Signal
 
 from ecp5.netlist import Netlist
 from glint_soc.ecp5_hdmi import Serializer
@@ -17,6 +17,7 @@ from glint_soc.ulx3s import Ulx3sSoC
 
 import boards
 from resources.tools import BUILD, run_yosys
+from simulation import run_simulation
 
 _OUTPUT = BUILD / "ulx3s"
 _GATEWARE = _OUTPUT / "gateware"
