@@ -8,7 +8,7 @@ from pathlib import Path
 _COMPILERS = ("clang++-19", "clang++", "g++")
 """C++ compilers in the order of preference: clang compiles Verilator's code in half of the time."""
 
-_RUNTIME = ("verilated", "verilated_threads")
+_RUNTIME = ("verilated.cpp", "verilated_threads.cpp")
 _DEFINITIONS = [f"-DVM_{name}=0" for name in ("SC", "COVERAGE", "TIMING", "TRACE", "TRACE_VCD")]
 
 
@@ -42,20 +42,21 @@ def simulate(folder, name):
     verilate(root, "--cc", "-O3", "--no-timing", "-Wno-fatal", "-Wno-lint", "-Wno-COMBDLY", "--x-assign", "fast", "--x-initial", "fast",
              "--output-split", "0", "--top-module", name, "-Mdir", objects, folder / f"{name}.sv")
     include = root / "include"
-    # One file for all parts that run in each clock, and one for those that run once: separate compilation of the parts takes longer.
+    # One file for all parts that run in each clock, and one for those that run once and Verilator's runtime: separate compilation of all
+    # parts takes longer.
     parts, whole, once = sorted(objects.glob(f"V{name}*.cpp")), objects / "whole.cpp", objects / "once.cpp"
     for file, included in ((whole, [part for part in parts if "__Slow" not in part.name] + [folder / "testbench.cpp"]),
-                           (once, [part for part in parts if "__Slow" in part.name])):
+                           (once, [include / part for part in _RUNTIME] + [part for part in parts if "__Slow" in part.name])):
         file.write_text("".join(f'#include "{path.resolve()}"\n' for path in included))
-    sources = [whole, once, *(include / f"{part}.cpp" for part in _RUNTIME)]
+    sources = [whole, once]
     options = ["-std=gnu++20", "-w", "-pthread", *_DEFINITIONS, f"-I{objects}", f"-I{include}", f"-I{include / 'vltstd'}"]
     # Only the parts that run in each clock are optimised: little time is spent in the others and in Verilator's runtime.
     jobs = [subprocess.Popen([compiler, *options, "-O1" if source == whole else "-O0", "-c", str(source),
-                              "-o", str(objects / f"{source.stem}.o")]) for source in sources]
+                              "-o", str(source.with_suffix(".o"))]) for source in sources]
     if any([job.wait() for job in jobs]):
         raise RuntimeError(f"{compiler} failed")
     program = objects / "testbench"
-    subprocess.run([compiler, "-pthread", *(str(objects / f"{source.stem}.o") for source in sources), "-latomic", "-o", str(program)],
+    subprocess.run([compiler, "-pthread", *(str(source.with_suffix(".o")) for source in sources), "-latomic", "-o", str(program)],
                    check=True)
     # The design reads the contents of its memories from this folder.
     return subprocess.run([str(program.resolve())], cwd=folder, check=False).returncode
