@@ -106,13 +106,11 @@ module texture_place (
     for (genvar lane = 0; lane < 4; lane++) begin : lanes
         (* ram_style = "block" *) logic [32:0] inverses [0:511];
 
-        initial begin
-            for (int i = 0; i < 512; i++) begin
-                int from, to;
-                from = i == 0 ? (1 << 20) - 3 : ((1 << 30) + 512 + i) / (2 * (512 + i));
-                to   = ((1 << 30) + 513 + i) / (2 * (513 + i));
-                inverses[i] = {12'(to - from), 21'(from + 2)};
-            end
+        for (genvar i = 0; i < 512; i++) begin : rows
+            localparam int FROM = i == 0 ? (1 << 20) - 3 : ((1 << 30) + 512 + i) / (2 * (512 + i));
+            localparam int TO   = ((1 << 30) + 513 + i) / (2 * (513 + i));
+
+            initial inverses[i] = {12'(TO - FROM), 21'(FROM + 2)};
         end
 
         logic [31:0] depth;
