@@ -71,8 +71,8 @@ class Proof:
 
 
 # The longest proofs come first: several run at a time, and a long proof should not run alone at the end. An additional clock can double the
-# run time, so the depth of ring_lane, line_raster, band_flush, band_extents, smooth_shader and walker is the smallest that detects all of
-# their mutations.
+# run time, so the depth of ring_lane, line_raster, band_flush, band_extents, smooth_shader, walker and read_port is the smallest that
+# detects all of their mutations.
 PROOFS = [
     Proof("ring_lane", "ring_lane_proof", 43, ("any_product", "any_field"), engine=_WORDS),
     Proof("exit_lane", "exit_lane_proof", 54, ("any_product", "any_solid")),
@@ -91,7 +91,7 @@ PROOFS = [
     Proof("texture_queue", "texture_queue_proof", 18),
     Proof("walker", "walker_proof", 14, ("any_stepper",)),
     Proof("lanes", "lanes_proof", 16),
-    Proof("read_port", "read_port_proof", 16),
+    Proof("read_port", "read_port_proof", 14),
     Proof("write_port", "write_port_proof", 16),
     Proof("memory_crossbar", "memory_crossbar_proof", 12, programs=("memory_crossbar",), engine=_WORDS),
     Proof("memory_multiplexer", "memory_multiplexer_proof", 36, programs=("memory_multiplexer",)),
