@@ -71,14 +71,14 @@ class Proof:
 
 
 # The longest proofs come first: several run at a time, and a long proof should not run alone at the end. An additional clock can double the
-# run time, so the depth of ring_lane, line_raster, band_flush, band_extents, smooth_shader, walker and read_port is the smallest that
-# detects all of their mutations.
+# run time, so the depth of ring_lane, line_raster, line_setup, band_flush, band_extents, band_pipe, smooth_shader, walker and read_port is
+# the smallest that detects all of their mutations.
 PROOFS = [
     Proof("ring_lane", "ring_lane_proof", 43, ("any_product", "any_field"), engine=_WORDS),
     Proof("exit_lane", "exit_lane_proof", 54, ("any_product", "any_solid")),
     Proof("exit_shadow", "exit_shadow_proof", 14, ("any_lane",)),
     Proof("line_raster", "line_raster_proof", 23),
-    Proof("line_setup", "line_setup_proof", 47, ("any_product",)),
+    Proof("line_setup", "line_setup_proof", 44, ("any_product",)),
     Proof("band_flush", "band_flush_proof", 20),
     Proof("band_flush of averages", "band_average_proof", 31),
     Proof("band_extents", "band_extents_proof", 26),
@@ -108,8 +108,8 @@ PROOFS = [
     Proof("credit_fifo without register", "buffer_proof", 28, parameters={"DEPTH": 4, "FLIGHT": 3, "DIRECT": 1}),
     Proof("cdc_fifo", "cdc_fifo_proof", 40, ("any_level",), has_clocks=True, engine=_WORDS),
     Proof("camera_capture", "camera_capture_proof", 32, has_clocks=True),
-    Proof("band_pipe", "band_pipe_proof", 14),
-    Proof("band_pipe with blended pixels", "band_pipe_proof", 14, parameters={"BLEND": 1}),
+    Proof("band_pipe", "band_pipe_proof", 13),
+    Proof("band_pipe with blended pixels", "band_pipe_proof", 13, parameters={"BLEND": 1}),
     Proof("cull", "cull_proof", 30, ("any_product",)),
     Proof("classify", "classify_proof", 14),
 ]
