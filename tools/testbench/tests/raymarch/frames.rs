@@ -1,12 +1,13 @@
-//! Tests of whole frames of the raymarcher.
+//! Tests of whole frames of the raymarcher. Large frames are rare: they consist of more bands and groups of the same kinds, and take most of the
+//! time.
 
 use glint_model::raymarch::{FieldSetup, Lights, Palette, Shine, State};
 use glint_testbench::{FrameCost, Raymarcher};
 use glint_vectors::Random;
 
 use crate::scenes::{
-    ENDLESS_UNIONS, FIELDS, ROUND, SPONGES, UNIONS, further_kinds, lights, limit_steps, setup,
-    unshaded_setup,
+    ENDLESS_UNIONS, FIELDS, ROUND, SPONGES, UNIONS, further_kinds, lights, limit_steps,
+    setup_of_width, unshaded_setup,
 };
 
 /// Number of lanes of the module `raymarcher_sponge`.
@@ -28,11 +29,16 @@ fn busy(taken: &FrameCost) -> String {
 fn frames_of_all_fields_with_stalls() {
     let mut random = Random(9);
     let mut bench = Raymarcher::new("raymarcher", 1);
-    for _ in 0..4 {
-        draw_in_short(&mut bench, &mut random, &FIELDS);
+    for (width, fields) in [
+        (320, &FIELDS[..]),
+        (320, &FIELDS),
+        (640, &FIELDS),
+        (1280, &["union:planes:1+spheres:0,0,-0.7,0.5;2,1,1,0.4"]),
+    ] {
+        draw_in_short(&mut bench, &mut random, fields, width);
     }
     for text in further_kinds() {
-        draw_in_short(&mut bench, &mut random, &[text]);
+        draw_in_short(&mut bench, &mut random, &[text], 320);
     }
     // Backpressure at the output of pixels blocks the ends of rays, which in turn block the rays.
     assert!(bench.stalled() > 0);
@@ -40,8 +46,8 @@ fn frames_of_all_fields_with_stalls() {
 
 /// Draws a frame of a random field of `fields` with a low step limit, because an undecided ray, which takes all steps, costs as
 /// much as 20 decided rays.
-fn draw_in_short(bench: &mut Raymarcher, random: &mut Random, fields: &[&str]) {
-    let mut setup = setup(random, fields);
+fn draw_in_short(bench: &mut Raymarcher, random: &mut Random, fields: &[&str], width: u32) {
+    let mut setup = setup_of_width(random, fields, width);
     limit_steps(&mut setup, 40);
     let palette = match setup.stereo {
         Some(_) => Palette::default().grey(),
@@ -67,7 +73,8 @@ fn frames_of_round_fields_in_all_lights() {
     let mut bench = Raymarcher::new("raymarcher", 1);
     for frame in 0..5 {
         let fields = [&ROUND[..], &UNIONS, &SPONGES][frame % 3];
-        let mut setup = setup(&mut random, fields);
+        let width = if frame == 0 { 640 } else { 320 };
+        let mut setup = setup_of_width(&mut random, fields, width);
         limit_steps(&mut setup, 20);
         let palette = Palette {
             shadows: [[10, 20, 30], [40, 50, 60], [70, 80, 90]],
@@ -81,12 +88,7 @@ fn frames_of_round_fields_in_all_lights() {
 
 /// A random frame of 320 columns of a field, and a palette with random lights.
 fn small_and_lit(random: &mut Random, text: &str) -> (FieldSetup, Palette) {
-    let setup = loop {
-        let setup = setup(random, &[text]);
-        if setup.width == 320 {
-            break setup;
-        }
-    };
+    let setup = setup_of_width(random, &[text], 320);
     let palette = Palette {
         lights: lights(random, setup.stereo.is_some()),
         ..Palette::default()
@@ -134,9 +136,9 @@ fn round_pixels_take_a_clock_a_pass() {
     let mut random = Random(13);
     let mut bench = Raymarcher::new("raymarcher", 1);
     let setup = loop {
-        let setup = setup(&mut random, &["sphere:1"]);
+        let setup = setup_of_width(&mut random, &["sphere:1"], 320);
         let end = setup.tracer().trace(0, setup.width / 2, setup.height / 2);
-        if setup.width == 320 && matches!(end.state, State::Hit(_)) {
+        if matches!(end.state, State::Hit(_)) {
             break setup;
         }
     };
@@ -177,7 +179,7 @@ fn a_cancelled_frame_leaves_nothing() {
     let mut random = Random(11);
     let mut bench = Raymarcher::new("raymarcher", 3);
     for clocks in [1, 20, 500, 20_000] {
-        let setup = setup(&mut random, &["cubes:2,0.5"]);
+        let setup = setup_of_width(&mut random, &["cubes:2,0.5"], 320);
         bench.cancel(&setup, clocks);
         let mut setup = setup;
         limit_steps(&mut setup, 8);

@@ -140,6 +140,16 @@ pub fn setup(random: &mut Random, fields: &[impl AsRef<str>]) -> FieldSetup {
     setup_from(random, fields, &camera)
 }
 
+/// Makes random frame constants like [`setup`], of a picture with this many columns.
+pub fn setup_of_width(random: &mut Random, fields: &[impl AsRef<str>], width: u32) -> FieldSetup {
+    loop {
+        let setup = setup(random, fields);
+        if setup.width == width {
+            return setup;
+        }
+    }
+}
+
 /// Makes random frame constants of marching rays in fields of [`SMOOTH`], some of them seen from very far away.
 pub fn marching_setup(random: &mut Random) -> FieldSetup {
     let camera = match random.bits() % 4 {
