@@ -118,7 +118,7 @@ fn frames_of_objects() {
         for frame in 0..3 {
             bench.slot = random.random_range(0..2);
             bench.with_depth = random.random_ratio(1, 4);
-            let size = SIZES[[0, 0, 0, 1, 2][random.random_range(0..5)]];
+            let size = SIZES[[0, 0, 0, 0, 0, 1, 1, 2][random.random_range(0..8)]];
             let count = random.random_range(1..6);
             let things: Vec<_> = (0..count)
                 .map(|_| some_thing(&mut random, shading))
