@@ -1,6 +1,6 @@
 //! Bit vectors for the values of a module's ports.
 
-use std::fmt;
+use std::{fmt, iter};
 
 /// Number of 32-bit words of the widest port.
 const WORDS: usize = 16;
@@ -59,10 +59,10 @@ impl Bits {
     #[must_use]
     pub(crate) fn field(&self, low: usize, width: usize) -> u64 {
         assert!(width <= 64 && low + width <= 32 * WORDS);
-        // 64 bits at any offset touch at most three words.
-        let word = |i: usize| u128::from(self.0.get(low / 32 + i).copied().unwrap_or(0));
-        let three = word(0) | word(1) << 32 | word(2) << 64;
-        (three >> (low % 32)) as u64 & ((1_u128 << width) - 1) as u64
+        parts(low, width).fold(0, |value, part| {
+            let found = self.0[part.word] >> part.shift & part.mask;
+            value | u64::from(found) << part.done
+        })
     }
 
     /// Returns the field of `width` bits from bit `low` up, shifted to bit 0; `width` may be above 64.
@@ -124,13 +124,43 @@ impl Bits {
     pub(crate) fn with(mut self, low: usize, width: usize, value: impl Into<i128>) -> Self {
         let value = value.into();
         assert!(holds(width, value), "{value} in {width} bits");
-        for i in 0..width {
-            let at = low + i;
-            let bit = (value >> i & 1) as u32;
-            self.0[at / 32] = self.0[at / 32] & !(1 << (at % 32)) | bit << (at % 32);
+        for part in parts(low, width) {
+            let kept = self.0[part.word] & !(part.mask << part.shift);
+            let set = (value >> part.done) as u32 & part.mask;
+            self.0[part.word] = kept | set << part.shift;
         }
         self
     }
+}
+
+/// Part of a field that is within one word of 32 bits.
+pub(crate) struct Part {
+    /// Index of the word.
+    pub word: usize,
+    /// Lowest bit of the part within the word.
+    pub shift: usize,
+    /// As many ones as the part has bits.
+    pub mask: u32,
+    /// Number of bits of the field below the part.
+    pub done: usize,
+}
+
+/// Returns the parts of the field of `width` bits from bit `low` up, the lowest first.
+pub(crate) fn parts(low: usize, width: usize) -> impl Iterator<Item = Part> {
+    let mut done = 0;
+    iter::from_fn(move || {
+        let (at, left) = (low + done, width - done);
+        let shift = at % 32;
+        let count = left.min(32 - shift);
+        let part = (count > 0).then(|| Part {
+            word: at / 32,
+            shift,
+            mask: u32::MAX >> (32 - count),
+            done,
+        });
+        done += count;
+        part
+    })
 }
 
 /// Whether `width` bits can hold the number `value`, either as a signed or as an unsigned number.

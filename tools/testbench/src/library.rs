@@ -11,6 +11,7 @@ use libloading::Library;
 use serde::Deserialize;
 use thiserror::Error;
 
+use crate::bits::parts;
 use crate::{Bits, Layout};
 
 /// Version of the C interface that this file implements.
@@ -223,35 +224,41 @@ impl Instance {
     /// When there is no such port, or the port has more than 64 bits.
     #[must_use]
     pub fn value(&self, port: usize) -> u64 {
-        let bytes = self.bytes(port);
-        match *bytes {
-            [byte] => byte.into(),
-            [a, b] => u16::from_le_bytes([a, b]).into(),
-            [a, b, c, d] => u32::from_le_bytes([a, b, c, d]).into(),
-            _ => u64::from_le_bytes(bytes.try_into().expect("a port of at most 64 bits")),
-        }
+        self.field(port, 0, self.ports[port].width)
     }
 
     /// Drives an input of at most 64 bits.
     ///
     /// # Panics
-    /// When there is no such input, or the value does not fit.
+    /// When there is no such input, it has more than 64 bits, or the value does not fit.
     pub fn set_value(&mut self, port: usize, value: u64) {
-        let Slot { width, .. } = self.ports[port];
-        self.check_input(port, width >= 64 || value >> width == 0, value);
-        // Copies fixed lengths, because a copy of variable length compiles to a function call.
-        let bytes = value.to_le_bytes();
-        match self.bytes_mut(port) {
-            [byte] => *byte = bytes[0],
-            [a, b] => [*a, *b] = [bytes[0], bytes[1]],
-            target => {
-                let (low, high) = target.split_at_mut(4);
-                low.copy_from_slice(&bytes[..4]);
-                if !high.is_empty() {
-                    high[..4].copy_from_slice(&bytes[4..]);
-                    high[4..].fill(0);
-                }
-            }
+        self.set_field(port, 0, self.ports[port].width, value);
+    }
+
+    /// Returns the field of at most 64 bits of a port from bit `low` up, after the last evaluation.
+    ///
+    /// # Panics
+    /// When there is no such port, the field is not within it, or it has more than 64 bits.
+    #[must_use]
+    pub fn field(&self, port: usize, low: usize, width: usize) -> u64 {
+        assert!(width <= 64 && low + width <= self.ports[port].width);
+        parts(low, width).fold(0, |value, part| {
+            let found = self.word(port, part.word) >> part.shift & part.mask;
+            value | u64::from(found) << part.done
+        })
+    }
+
+    /// Drives the field of at most 64 bits of an input from bit `low` up.
+    ///
+    /// # Panics
+    /// When there is no such input, the field is not within it, it has more than 64 bits, or the value does not fit.
+    pub fn set_field(&mut self, port: usize, low: usize, width: usize, value: u64) {
+        assert!(width <= 64 && low + width <= self.ports[port].width);
+        self.check_input(port, width == 64 || value >> width == 0, value);
+        for part in parts(low, width) {
+            let kept = self.word(port, part.word) & !(part.mask << part.shift);
+            let set = (value >> part.done) as u32 & part.mask;
+            self.set_word(port, part.word, kept | set << part.shift);
         }
     }
 
@@ -261,17 +268,10 @@ impl Instance {
     /// When there is no such port, or the field is not within it.
     #[must_use]
     pub fn bits(&self, port: usize, low: usize, width: usize) -> Bits {
-        assert!(low + width <= self.ports[port].width);
         let mut bits = Bits::default();
-        for (i, to) in bits.words_mut()[..width.div_ceil(32)]
-            .iter_mut()
-            .enumerate()
-        {
-            let at = low + 32 * i;
-            let two =
-                u64::from(self.word(port, at / 32)) | u64::from(self.word(port, at / 32 + 1)) << 32;
-            let count = (width - 32 * i).min(32);
-            *to = (two >> (at % 32)) as u32 & (u32::MAX >> (32 - count));
+        let words = &mut bits.words_mut()[..width.div_ceil(32)];
+        for (to, done) in words.iter_mut().zip((0..).step_by(32)) {
+            *to = self.field(port, low + done, (width - done).min(32)) as u32;
         }
         bits
     }
@@ -281,17 +281,10 @@ impl Instance {
     /// # Panics
     /// When there is no such input, the field is not within it, or the value does not fit.
     pub fn set_bits(&mut self, port: usize, low: usize, width: usize, value: Bits) {
-        assert!(low + width <= self.ports[port].width);
         self.check_input(port, value.fits(width), value);
-        let mut done = 0;
-        while done < width {
-            let at = low + done;
-            let count = (32 - at % 32).min(width - done);
-            let mask = (u32::MAX >> (32 - count)) << (at % 32);
-            let part = (value.field(done, count) as u32) << (at % 32);
-            let word = self.word(port, at / 32) & !mask | part;
-            self.set_word(port, at / 32, word);
-            done += count;
+        let words = &value.words()[..width.div_ceil(32)];
+        for (&from, done) in words.iter().zip((0..).step_by(32)) {
+            self.set_field(port, low + done, (width - done).min(32), from.into());
         }
     }
 

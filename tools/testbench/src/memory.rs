@@ -35,7 +35,7 @@ impl Memory {
     pub fn store(&mut self, address: u32, data: Bits, strobe: u16) {
         for (i, byte) in self.words[address as usize].iter_mut().enumerate() {
             if strobe >> i & 1 == 1 {
-                *byte = data.element(8, i) as u8;
+                *byte = (data.words()[i / 4] >> (8 * (i % 4))) as u8;
             }
         }
     }
@@ -88,13 +88,13 @@ impl ReadPort {
     /// Drives the port for the next clock: delivers a word if a word is due, and accepts or stalls commands.
     pub fn drive(&mut self, module: &mut Module, memory: &Memory) {
         let stalled = self.stalls.next_stalled();
-        module.set(self.cmd[1], u64::from(!stalled));
+        module.set_value(self.cmd[1], u64::from(!stalled));
         let due = self
             .queue
             .front()
             .is_some_and(|&(cycle, _)| cycle <= module.cycles());
         let given = due && !self.stalls.next_stalled();
-        module.set(self.rdata[0], u64::from(given));
+        module.set_value(self.rdata[0], u64::from(given));
         if given && let Some((_, address)) = self.queue.pop_front() {
             self.given += 1;
             module.set(self.rdata[1], memory.word(address));
@@ -153,9 +153,9 @@ impl WritePort {
     /// Drives the port for the next clock: accepts or stalls commands, and data of earlier commands.
     pub fn drive(&mut self, module: &mut Module) {
         let stalled = self.stalls.next_stalled();
-        module.set(self.cmd[1], u64::from(!stalled));
+        module.set_value(self.cmd[1], u64::from(!stalled));
         self.takes = !self.owed.is_empty() && !self.stalls.next_stalled();
-        module.set(self.wdata[1], u64::from(self.takes));
+        module.set_value(self.wdata[1], u64::from(self.takes));
     }
 
     /// Takes the command of this clock, if any, and writes its data to `memory` if `drive` accepted data for this clock.

@@ -11,8 +11,6 @@ pub struct Port {
     index: usize,
     pub(crate) low: usize,
     pub(crate) width: usize,
-    /// Whether the part is the whole port.
-    whole: bool,
 }
 
 /// One instance of a module, with a clock `clk` and a reset `rst`.
@@ -88,14 +86,12 @@ impl Module {
     fn part(&self, path: &str) -> (Port, &Layout) {
         let (name, rest) = split(path);
         let index = self.instance.find(name);
-        let layout = &self.instance.port(index).layout;
-        let part = layout.find(rest);
+        let part = self.instance.port(index).layout.find(rest);
         let part = part.unwrap_or_else(|error| panic!("{name}: {error}"));
         let port = Port {
             index,
             low: part.low,
             width: part.layout.width(),
-            whole: part.layout.width() == layout.width(),
         };
         (port, part.layout)
     }
@@ -159,12 +155,9 @@ impl Module {
 
     /// Drives an input, or part of an input, of at most 64 bits.
     pub fn set_value(&mut self, port: Port, value: u64) {
-        if port.whole {
-            self.settled = false;
-            self.instance.set_value(port.index, value);
-        } else {
-            self.set(port, value);
-        }
+        self.settled = false;
+        self.instance
+            .set_field(port.index, port.low, port.width, value);
     }
 
     /// Returns the bits of a port after the last [`settle`](Self::settle) or [`clock`](Self::clock).
@@ -176,10 +169,7 @@ impl Module {
     /// Returns the value of a port of at most 64 bits.
     #[must_use]
     pub fn value(&self, port: Port) -> u64 {
-        if port.whole {
-            return self.instance.value(port.index);
-        }
-        self.get(port).field(0, port.width)
+        self.instance.field(port.index, port.low, port.width)
     }
 
     /// Whether a one-bit port is high.

@@ -137,7 +137,7 @@ impl Source {
     pub fn drive(&mut self, module: &mut Module) {
         let stalled = self.stalls.next_stalled();
         self.shown |= !stalled && !self.items.is_empty();
-        module.set(self.ports.valid, u64::from(self.shown));
+        module.set_value(self.ports.valid, u64::from(self.shown));
         for (i, &port) in self.ports.payload.iter().enumerate() {
             match self.items.front() {
                 Some(item) if self.shown => module.set(port, item[i]),
@@ -195,7 +195,7 @@ impl Sink {
     /// Drives `ready`: high, or low during a stall.
     pub fn drive(&mut self, module: &mut Module) {
         let ready = !self.stalls.next_stalled();
-        module.set(self.ports.ready, u64::from(ready));
+        module.set_value(self.ports.ready, u64::from(ready));
     }
 
     /// Takes the item on the ports if it is valid and the sink is ready in this cycle.
@@ -203,28 +203,26 @@ impl Sink {
     /// # Panics
     /// When a valid payload changed or disappeared before it was taken.
     pub fn sample(&mut self, module: &Module) {
-        let valid = module.is_high(self.ports.valid);
-        let found: Vec<Bits> = self
-            .ports
-            .payload
-            .iter()
-            .map(|&port| module.get(port))
-            .collect();
-        if let Some(waiting) = &self.waiting {
-            let (name, cycle) = (&self.ports.name, module.cycles());
+        let (name, cycle) = (&self.ports.name, module.cycles());
+        let waiting = self.waiting.take();
+        if !module.is_high(self.ports.valid) {
             assert!(
-                valid,
+                waiting.is_none(),
                 "{name}: payload withdrawn in cycle {cycle} before it was taken"
             );
+            return;
+        }
+        let payload = self.ports.payload.iter();
+        let found = payload.map(|&port| module.get(port)).collect();
+        if let Some(waiting) = waiting {
             assert_eq!(
-                &found, waiting,
+                found, waiting,
                 "{name}: payload changed in cycle {cycle} before it was taken"
             );
         }
-        self.waiting = None;
         if self.ports.moves(module) {
             self.items.push(found);
-        } else if valid {
+        } else {
             self.waiting = Some(found);
         }
     }
