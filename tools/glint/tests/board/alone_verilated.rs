@@ -61,7 +61,6 @@ fn the_verilated_board_runs_alone_from_its_flash() {
         cycles < limit,
         "{cycles} cycles, expected less than {limit}"
     );
-    println!("{cycles} cycles until the prompt");
 
     let contact = limit / 25;
     for buttons in [1, 0] {
