@@ -73,7 +73,8 @@ module axi_ports_proof #(
         words_waiting <= rst ? '0 : wdata_valid & ~wdata_ready;
     end
 
-    // Writers of the addresses that memory has taken without their words, the oldest at index 0.
+    // For each write address that memory has accepted, but whose word it has not yet accepted: the port that wrote it, the oldest at
+    // index 0.
     logic [2*MOST:0] order;
     logic [2:0]      level;
     logic            ar, aw, w;

@@ -97,7 +97,8 @@ class Netlist:
         for name, cell in self.cells.items():
             names = [None if name.startswith("$") else re.sub(r"(\.\d+)+$", "", name), *map(self.name, _bits(cell, "output"))]
             if is_flat_source and "." not in (names[0] or "."):
-                names.append(names.pop(0) + "_") # the name of a memory or a primitive: its last word counts too
+                # A memory or a primitive is an instance itself. The "_" keeps `path` from dropping the last word of its name.
+                names.append(names.pop(0) + "_")
             if own := next(filter(None, names), None):
                 owners[name] = path(own)
         waiting = self.cells.keys() - owners.keys()

@@ -5,8 +5,8 @@
 //             read_row    reading[0]      reading[1]         write_*
 //
 // A lane is written if its mask bit is set and its depth code is at least the stored one; the stored code of a pixel not yet
-// written in this band is 0. A group for one half of the colour (the view of one eye) has no depth test. Latency 3 clocks from
-// `read_row` to `write_*`; throughput one group per clock.
+// written in this band is 0. For two eyes, a group writes only one byte of each colour word, for the view of one eye; such a group
+// has no depth test. Latency 3 clocks from `read_row` to `write_*`; throughput one group per clock.
 //
 // Hazard: a group must not read a lane before an earlier group has written it. A group that shares a row and a lane with one
 // of the three groups before it is held until at least four clocks after that group. Groups that share a row but no lane, as

@@ -33,7 +33,7 @@ pub fn find(file: &str, command: &'static str) -> Result<PathBuf, NotBuilt> {
     find_in(&folders, file, command)
 }
 
-/// The folders that may be a clone of Glint, as [`find`] searches them.
+/// The folders in which [`find`] looks for a clone of Glint, in the order of the search.
 pub fn folders() -> Vec<PathBuf> {
     if let Some(home) = env::var_os(HOME) {
         return vec![PathBuf::from(home)];

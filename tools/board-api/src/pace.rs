@@ -34,7 +34,7 @@ impl Clock for SystemClock {
     }
 }
 
-/// Maximum delay behind real time that a board catches up. After a longer delay, real time counts from the current cycle.
+/// Longest delay behind real time that a board makes up for. A longer delay is dropped: real time is measured from the current cycle again.
 const MAX_DELAY: Duration = Duration::from_millis(50);
 
 /// Relates a board's cycles to real time.

@@ -27,7 +27,7 @@ async function filesOf(entries) {
     if (entry.isDirectory) {
       const reader = entry.createReader();
       const read = () => new Promise((done, fail) => reader.readEntries(done, fail));
-      // Each call returns some of the entries, and no entry at the end.
+      // Each call returns the next entries; an empty list means that all entries were returned.
       for (let some = await read(); some.length > 0; some = await read()) entries.push(...some);
     } else if (entry.isFile) {
       const file = await new Promise((done, fail) => entry.file(done, fail));

@@ -84,8 +84,8 @@ impl Rounding {
         }
     }
 
-    /// Number to add before truncation in the pixel in column x and line y, in eighths of a step of red and blue. Half of this number,
-    /// rounded down, is added to green, in quarters of a step.
+    /// Number to add to red and blue before they are truncated, for the pixel in column x and line y. Its unit is an eighth of a step of
+    /// red or blue. Half of this number, rounded down, is added to green, in quarters of a step.
     pub fn threshold(self, [x, y]: [u32; 2]) -> u8 {
         match self {
             Self::Dithered => ((x ^ y) << 2 & 4 | y << 1 & 2 | (x ^ y) >> 1 & 1) as u8,

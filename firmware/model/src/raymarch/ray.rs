@@ -163,8 +163,8 @@ fn long_pace(direction: [i32; 3]) -> u32 {
     ((1_u64 << 62) / square).isqrt() as u32
 }
 
-/// The change of T by which a ray may advance at a distance from the solid; 0 in the solid. Rounded up, so that T always changes outside of
-/// the solid.
+/// The step in T that a ray may take from a point with this `distance` to the solid; 0 inside the solid. Rounded up, so that every step
+/// outside of the solid increases T.
 fn stride(distance: i32, pace: u32) -> u32 {
     const SHIFT: u32 = FRACTION + 14 - MARCH_FRACTION;
     let product = u64::from(distance.max(0) as u32) * u64::from(pace);

@@ -117,7 +117,7 @@ fn split(file: &[u8]) -> Result<(&[u8], &[u8]), FormatError> {
         let start = at + 8;
         let chunk = file.get(start..).and_then(|rest| rest.get(..size as usize));
         let chunk = chunk.ok_or_else(|| {
-            let expected = format!("a chunk within {length} bytes");
+            let expected = format!("a chunk of at most {} bytes", length.saturating_sub(start));
             FormatError::new(Location::Byte(at), expected, format!("{size} bytes"))
         })?;
         match kind {

@@ -1,4 +1,4 @@
-//! Textures and fog at extreme sizes, distances and numbers, compared with f64.
+//! Textures and fog at extreme sizes and distances, with many repeats and layers, compared with f64.
 
 use std::collections::BTreeSet;
 

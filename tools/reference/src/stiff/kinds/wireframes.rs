@@ -132,7 +132,7 @@ fn there_and_back(Turns { keys, times }: Turns) -> Result<Outcome> {
     Ok(Outcome::exact(place(&motion)))
 }
 
-/// Pans to the right until the limit, at most this many times.
+/// Pans to the right until the limit is reached, at most `times` times.
 fn pan(times: u32) -> Result<Outcome> {
     let mut motion = Motion::default();
     let steps = (0..times).take_while(|_| motion.apply(Key::Right.step(false)));

@@ -102,8 +102,9 @@ fn ramp() -> FourSamples {
 /// Errors of rounded averages.
 #[derive(Default)]
 struct Dithered {
+    /// Errors of single pixels.
     pixels: Errors,
-    /// Of means over 8×8 pixels.
+    /// Errors of the means of blocks of 8×8 pixels.
     means: Errors,
 }
 
