@@ -109,11 +109,14 @@ fn run(console: &mut Console<SimulatedBoard<EmulatedBoard>>, milliseconds: u64) 
 
 /// Maximum errors of the hand's centre in pixels, of the camera's angles in degrees, and of its
 /// distance, while the hand moves the camera at up to four turns per second. They result from the
-/// lag of the filters after one camera frame.
-const MAX_ERRORS: [f64; 3] = [0.3, 8.0, 0.2];
+/// lag of the filters after one camera frame. Where the hand turns fast, the region of interest cuts off
+/// an edge of the hand in a frame; in the other frames its centre is within 0.3 pixels.
+const MAX_ERRORS: [f64; 3] = [0.6, 8.0, 0.2];
 /// Maximum error of the hand's centre in pixels in the first 16 ms. The hand starts at full speed,
 /// so in one frame the region of interest, which fits a hand at rest, cuts off a part of the hand.
 const START: f64 = 3.0;
+/// Milliseconds between two looks at the state: less than a camera frame, so each frame is checked.
+const LOOK: u64 = 2;
 /// Maximum of the soft core's mean number of cycles for a camera frame.
 const CYCLES: u32 = 4_000;
 
@@ -149,14 +152,14 @@ fn the_camera_follows_the_hand() {
     let films = std::env::var_os("GLINT_UPDATE").is_some();
     let mut film = Vec::new();
     // The hand moves along half of the path; if an animation is recorded, along the whole path.
-    for step in 0..if films { 19 } else { 10 } {
+    for step in 0..if films { 19 } else { 160 / LOOK } {
         if films {
             film.push(Image {
                 colour: console.board().inner().monitor_frame(4).unwrap(),
                 ..Image::empty(Size::W320)
             });
         } else {
-            run(&mut console, 16);
+            run(&mut console, LOOK);
         }
         let lines = status(&mut console);
         assert_eq!(entry::<String>(&lines, "hand"), "tracked", "{lines:#?}");
@@ -175,7 +178,7 @@ fn the_camera_follows_the_hand() {
         let angle = (camera[1] - expected[1]).hypot(camera[2] - expected[2]);
         let errors = [distance(place), angle, (camera[0] - expected[0]).abs()];
         println!("{centre:.2?} {camera:.3?} {expected:.3?} {errors:.3?}");
-        if step == 0 {
+        if step * LOOK < 16 {
             assert!(errors[0] < START, "{errors:.3?}");
             continue;
         }
