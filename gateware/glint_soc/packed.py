@@ -31,7 +31,7 @@ class Struct:
     @property
     def value(self):
         """All members as one value for a port of this type, an input or an output."""
-        # A struct in SystemVerilog lists the member in the highest bits first, Cat in Migen the member in the lowest bits.
+        # A packed struct in SystemVerilog lists its members from the highest bits down, Cat in Migen from the lowest bits up.
         return Cat(*(_flat(value) for value in reversed(self._members.values())))
 
     def typedef(self):

@@ -6,7 +6,7 @@ import subprocess
 from pathlib import Path
 
 _COMPILERS = ("clang++-19", "clang++", "g++")
-"""C++ compilers in the order of preference: clang compiles Verilator's code in half of the time."""
+"""C++ compilers in the order of preference: clang compiles Verilator's code in half the time."""
 
 _RUNTIME = ("verilated.cpp", "verilated_threads.cpp")
 _DEFINITIONS = [f"-DVM_{name}=0" for name in ("SC", "COVERAGE", "TIMING", "TRACE", "TRACE_VCD")]

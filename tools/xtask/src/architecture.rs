@@ -37,7 +37,11 @@ fn every_part_of_a_block_has_its_name_and_exists() {
     );
     for row in rows {
         let (block, parts) = row.split_first().unwrap();
-        assert_eq!(row.len(), header.len(), "{block}: cells of its row");
+        assert_eq!(
+            row.len(),
+            header.len(),
+            "{block}: the number of cells in its row differs from the header's"
+        );
         for (part, kind) in parts.iter().zip(&header[1..]) {
             if part == ABSENT {
                 continue;

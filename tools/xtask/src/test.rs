@@ -161,8 +161,8 @@ fn cargo(name: &str, arguments: &[&str]) -> Result<()> {
     run::step(name, &mut run::cargo(arguments))
 }
 
-/// Runs a cargo command as a check with clippy as the compiler and warnings as errors. `cargo clippy` uses another compiler than
-/// `cargo doc`, which would then compile every crate again.
+/// Runs a cargo command as a check with clippy as the compiler and warnings as errors. `cargo clippy` is not used: its
+/// compiler differs from that of `cargo doc`, which would compile every crate again.
 fn linted(name: &str, arguments: &[&str]) -> Result<()> {
     run::step(
         name,

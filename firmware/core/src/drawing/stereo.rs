@@ -86,7 +86,7 @@ impl Stereo {
     /// so that a point at the distance of zero parallax has the same position in both pictures.
     pub fn eyes(&self, view: &View) -> [View; 2] {
         let aside = self.half_separation;
-        // The quotient of half separation and distance of zero parallax is at most 1, rounded down.
+        // The half separation divided by the distance of zero parallax: at most 1, apart from the rounding of the divisor, so it fits.
         let shift = (aside.to_bits() << 24) / (self.zero_parallax.to_bits() >> 4).max(1);
         let shift = Q4_28::from_bits(shift as i32);
         [view.beside(-aside, shift), view.beside(aside, -shift)]

@@ -1,4 +1,4 @@
-//! The filters of the camera's control: a low pass that opens with speed, and a dead zone.
+//! The filters between the hand and the camera: a low pass whose corner frequency rises with the speed of its input, and a dead zone.
 
 use crate::fixed::{Q4_28, U16_16};
 

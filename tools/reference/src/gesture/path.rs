@@ -34,7 +34,7 @@ const PLACES: [[f64; 2]; 8] = [
 ];
 
 impl Path {
-    /// Position of the centre in pixels at a time in seconds.
+    /// The position of the hand's centre, in pixels, after `time` seconds.
     pub fn at(self, time: f64) -> [f64; 2] {
         match self {
             Self::Rest => [160.37, 120.21],

@@ -1,8 +1,8 @@
 //! The format of a log of sensor samples, which a board can replay: a header, then one record for each sample. A replay computes
 //! the attitude after each sample, and writes the attitude over the sample's record.
 //!
-//! All numbers are little-endian. A sample is less than 2^31 µs (36 minutes) later than the previous sample; any other difference
-//! of the times means an earlier sample.
+//! All numbers are little-endian. The difference of the times of two samples, modulo 2^32, is signed: below 2^31 µs (36 minutes) the
+//! second sample is later, otherwise it is earlier.
 //!
 //! | bytes | header |
 //! |---|---|

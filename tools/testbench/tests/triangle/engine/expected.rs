@@ -19,7 +19,7 @@ pub const CLEAR: u16 = 0x1234;
 
 /// A frame drawn by the model.
 pub struct Expected {
-    /// Size of the drawn picture: in samples if a pixel has four samples.
+    /// Size of the drawn picture in pixels, or in samples if a pixel has four samples.
     pub size: (u32, u32),
     /// The averages of a frame with four samples a pixel.
     pub averages: Option<Averages>,
