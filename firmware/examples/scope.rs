@@ -92,7 +92,7 @@ impl Program for Scope {
             let text = format_args!("no motion sensor on this board");
             canvas.text([LEFT + 140, 40], &FONT_9X18, Rgb565::WHITE, text);
         }
-        for ((name, colour), trace) in TRACES.iter().zip(&self.traces) {
+        for (column, ((name, colour), trace)) in (0..).zip(TRACES.iter().zip(&self.traces)) {
             let mut points = [Point::zero(); LENGTH];
             let (newer, older) = trace.split_at(self.next);
             let samples = older.iter().chain(newer);
@@ -102,13 +102,8 @@ impl Program for Scope {
             }
             let style = PrimitiveStyle::with_stroke(*colour, 1);
             let Ok(()) = Polyline::new(&points).into_styled(style).draw(canvas);
-            let y = points[LENGTH - 1].y - 9;
-            canvas.text(
-                [LEFT + LENGTH as i32 + 6, y],
-                &FONT_9X18,
-                *colour,
-                format_args!("{name}"),
-            );
+            let at = [LEFT + 18 * column, 6];
+            canvas.text(at, &FONT_9X18, *colour, format_args!("{name}"));
         }
     }
 }
