@@ -39,7 +39,7 @@ pub enum Purpose {
 
 /// A transfer in progress.
 pub struct Transfer {
-    /// What is transferred, and in which direction.
+    /// The transferred data, and the direction of the transfer.
     pub purpose: Purpose,
     /// The length and CRC-32 that the host has announced for an upload.
     announced: Option<Manifest>,

@@ -1,5 +1,5 @@
 """Simulation of modules in Python by Migen's simulator, but with a module's statements compiled to Python functions: Migen interprets all
-of them in each step, which takes ten times as long. A combinational statement runs when a signal that it reads or drives has changed."""
+of them in each step, which takes eight times as long. A combinational statement runs when a signal that it reads or drives has changed."""
 
 from collections import defaultdict
 from itertools import count

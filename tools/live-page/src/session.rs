@@ -392,8 +392,8 @@ impl<'a> Session<'a> {
     }
 
     /// Queues a request until the console waits for a command. It replaces a queued request with
-    /// the same [`Request::key`]. A [`Request::Help`] above the limit is dropped. Only an invalid
-    /// page sends so many, because the firmware has fewer commands.
+    /// the same [`Request::key`]. A [`Request::Help`] above the limit is dropped: a valid
+    /// page sends at most one for each command, and the firmware has fewer commands than the limit.
     fn keep(&mut self, request: Request) {
         self.waiting
             .retain(|earlier| earlier.key() != request.key());

@@ -89,7 +89,7 @@ pub struct Face {
 pub struct Texture {
     /// The name of its file, or its number in the file of the mesh, for messages.
     pub name: String,
-    /// The picture, or what is drawn in its place.
+    /// An image file, a texture for a board, or white.
     pub content: Content,
     /// Wrap modes and filter.
     pub sampler: Sampler,

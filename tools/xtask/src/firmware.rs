@@ -68,8 +68,8 @@ pub fn build(board: Board, features: &[&str]) -> Result<Image> {
 }
 
 /// Checks that the firmware with the report's kernels compiles and fits the memory: this build needs more SRAM of the soft core than any
-/// other. Unlike [`build`], the check compiles the other crates with the standard optimisation, which takes less time; their functions in the
-/// SRAM are a few hundred bytes smaller than in [`build`].
+/// other. Unlike [`build`], the check compiles the other crates with the standard optimisation, which takes less time; their
+/// functions in the SRAM are smaller than in [`build`].
 ///
 /// # Errors
 /// Those of [`build`].

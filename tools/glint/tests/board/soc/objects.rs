@@ -42,8 +42,8 @@ fn the_soc_draws_objects() {
     let all = OBJECTS.len();
     let usual = |view| (view, Clip::Guard, Winding::Mesh);
     let far = U8_28::lit("2.5");
-    // One object, all objects that the gateware draws, and one object more, from both cameras; a second size; and options that
-    // geometry passes do not support, so the CPU computes all descriptors.
+    // One object, all objects that the gateware draws, and one object more in two sizes. Geometry passes do not support the options of
+    // the last two frames, so the CPU computes all descriptors.
     let frames = [
         (1, Size::W320, usual(0)),
         (all, Size::W320, usual(1)),
