@@ -46,11 +46,12 @@ impl Renderer {
         wants_depth: bool,
         mut progress: impl FnMut(),
     ) -> Option<Result<Drawn, DrawError>> {
-        let eyes = match frame.eyes() {
-            Ok(eyes) => eyes,
-            Err(error) => return Some(Err(DrawError::Render(error))),
+        let eyes = frame.eyes();
+        // Matched by reference, because the frames of two eyes are large.
+        let eyes = match &eyes {
+            Ok(eyes) => eyes.as_ref(),
+            Err(error) => return Some(Err(DrawError::Render(*error))),
         };
-        let eyes = eyes.as_ref();
         Some(
             match self.draw_by_gateware(frame, eyes, backend, wants_depth, &mut progress)? {
                 Ok(gateware::Rendered {

@@ -232,10 +232,15 @@ impl GatewareRenderer {
         output: &mut Output,
         cpu: &mut Cpu,
     ) -> Option<Result<Rendered, Fallback>> {
-        if frame.is_divided() && has_lines(frame) {
+        if !frame.is_divided() {
+            return self.advance_part(frame, output, cpu);
+        }
+        if has_lines(frame) {
             return self.advance_quarters(frame, output, cpu);
         }
-        self.advance_part(frame, output, cpu)
+        // A copy for all steps, because each of them sets the quarter, and a frame is large.
+        let mut quarter = *frame;
+        self.advance_by(|renderer| renderer.step_quarters(&mut quarter, output, cpu))
     }
 
     /// Starts or continues the drawing of an undivided frame, or of one quarter.
@@ -245,12 +250,20 @@ impl GatewareRenderer {
         output: &mut Output,
         cpu: &mut Cpu,
     ) -> Option<Result<Rendered, Fallback>> {
+        self.advance_by(|renderer| renderer.step(frame, output, cpu))
+    }
+
+    /// Calls `step` after the end of each pass until `step` returns a result, or until a pass does not end soon.
+    fn advance_by(
+        &mut self,
+        mut step: impl FnMut(&mut Self) -> Option<Result<Rendered, Fallback>>,
+    ) -> Option<Result<Rendered, Fallback>> {
         if self.is_busy() {
             // This function polls for the end of short passes, because an interrupt for each of them would take 600 cycles.
             self.engine.set_interrupts(false);
         }
         loop {
-            let result = self.step(frame, output, cpu);
+            let result = step(self);
             if result.is_some() {
                 return result;
             }
@@ -280,9 +293,6 @@ impl GatewareRenderer {
         cpu: &mut Cpu,
     ) -> Option<Result<Rendered, Fallback>> {
         let next = match (self.stage, &frame.subject) {
-            _ if frame.is_divided() && !has_lines(frame) => {
-                return self.step_quarters(frame, output, cpu);
-            }
             (Stage::Idle, _) => return self.begin(frame, output, cpu).err().map(Err),
             (Stage::Project, Subject::Wireframe(wireframe)) if WIREFRAME.is_built => {
                 match self.project(wireframe, frame, 0) {

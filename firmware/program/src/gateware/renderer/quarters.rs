@@ -20,13 +20,20 @@ use crate::gateware::geometry::Cpu;
 use crate::gateware::quarters::Quarters;
 use crate::gateware::rendered::Rendered;
 
-/// Quarter `number` of a frame; the last quarter if `number` is too large.
-fn quarter_of<'a>(frame: &Frame<'a>, number: usize) -> Frame<'a> {
+/// Quarter `number`; the last quarter if `number` is too large.
+fn quarter(number: usize) -> Quarter {
     let [.., last] = Quarter::ALL;
-    Frame {
-        quarter: *Quarter::ALL.get(number).unwrap_or(&last),
-        ..*frame
-    }
+    *Quarter::ALL.get(number).unwrap_or(&last)
+}
+
+/// Progress of a divided frame in one step.
+enum Progress {
+    /// No pass has ended.
+    Waiting,
+    /// A pass has ended, or was started.
+    Continued,
+    /// The frame is complete.
+    Complete,
 }
 
 impl GatewareRenderer {
@@ -40,8 +47,11 @@ impl GatewareRenderer {
         cpu: &mut Cpu,
     ) -> Option<Result<Rendered, Fallback>> {
         loop {
-            let quarter = quarter_of(frame, self.quarters.count);
-            let drawn = self.advance_part(&quarter, output, cpu)?;
+            let part = Frame {
+                quarter: quarter(self.quarters.count),
+                ..*frame
+            };
+            let drawn = self.advance_part(&part, output, cpu)?;
             let Quarters {
                 count, rendered, ..
             } = mem::take(&mut self.quarters);
@@ -61,25 +71,26 @@ impl GatewareRenderer {
         }
     }
 
-    /// Starts a divided frame without lines, or continues the frame after the end of a pass.
+    /// Starts a divided frame without lines, or continues the frame after the end of a pass. Sets the frame's quarter.
     // Not inlined, so that other frames do not load this code into the instruction cache.
     #[inline(never)]
     pub(super) fn step_quarters(
         &mut self,
-        frame: &Frame,
+        frame: &mut Frame,
         output: &mut Output,
         cpu: &mut Cpu,
     ) -> Option<Result<Rendered, Fallback>> {
-        let result = if self.stage == Stage::Idle {
+        let progress = if self.stage == Stage::Idle {
             self.quarters = Quarters::default();
             self.start_measurement(frame);
-            self.start_quarter(frame, cpu).map(|()| false)
+            self.start_quarter(frame, cpu).map(|()| Progress::Continued)
         } else {
             self.continue_quarters(frame, output, cpu)
         };
-        match result {
-            Ok(false) => self.check_progress(output).err().map(Err),
-            Ok(true) => {
+        match progress {
+            Ok(Progress::Continued) => None,
+            Ok(Progress::Waiting) => self.check_progress(output).err().map(Err),
+            Ok(Progress::Complete) => {
                 self.stage = Stage::Idle;
                 let Quarters { triangles, .. } = mem::take(&mut self.quarters);
                 let mut rendered = self.rendered(frame, (Quarter::ALL.len() - 1) % 2);
@@ -93,31 +104,36 @@ impl GatewareRenderer {
     }
 
     /// Computes the constants of the next quarter, and starts its geometry passes.
-    fn start_quarter(&mut self, frame: &Frame, cpu: &mut Cpu) -> Result<(), Fallback> {
+    fn start_quarter(&mut self, frame: &mut Frame, cpu: &mut Cpu) -> Result<(), Fallback> {
         let number = self.quarters.count;
-        let (quarter, place) = (&quarter_of(frame, number), number % 2);
-        self.update_constants(quarter, place)?;
-        self.prepare_geometry(quarter, place)?;
-        self.quarters.is_listed = !self.start_geometry(quarter, place, cpu)?;
+        frame.quarter = quarter(number);
+        let place = number % 2;
+        self.update_constants(frame, place)?;
+        self.prepare_geometry(frame, place)?;
+        self.quarters.is_listed = !self.start_geometry(frame, place, cpu)?;
         self.stage = Stage::Quarters;
         self.pass_start = cpu::cycles_low();
         Ok(())
     }
 
-    /// Continues after the end of a pass. Returns whether the frame is complete.
+    /// Continues after the end of a pass.
     fn continue_quarters(
         &mut self,
-        frame: &Frame,
+        frame: &mut Frame,
         output: &mut Output,
         cpu: &mut Cpu,
-    ) -> Result<bool, Fallback> {
+    ) -> Result<Progress, Fallback> {
         let number = self.quarters.count;
-        let (quarter, place) = (&quarter_of(frame, number), number % 2);
+        frame.quarter = quarter(number);
+        let place = number % 2;
+        let mut progress = Progress::Waiting;
         if self.quarters.lists()
             && let Some(result) = self.engine.geometry()
         {
             result?;
-            self.quarters.is_listed = !self.continue_geometry(quarter, place)?;
+            self.quarters.is_listed = !self.continue_geometry(frame, place)?;
+            self.pass_start = cpu::cycles_low();
+            progress = Progress::Continued;
         }
         if self.quarters.rasters
             && let Some(result) = self.engine.raster()
@@ -125,15 +141,16 @@ impl GatewareRenderer {
             result?;
             self.quarters.rasters = false;
             if number == Quarter::ALL.len() {
-                return Ok(true);
+                return Ok(Progress::Complete);
             }
+            progress = Progress::Continued;
         }
         if self.quarters.rasters || self.quarters.lists() {
-            return Ok(false);
+            return Ok(progress);
         }
         // The raymarcher uses its registers during a raster pass, so they are written between two raster passes.
         self.set_field(place, number > 0)?;
-        self.start_raster(quarter, output, place)?;
+        self.start_raster(frame, output, place)?;
         self.quarters.rasters = true;
         self.quarters.count = number + 1;
         self.quarters.is_listed = false;
@@ -141,6 +158,6 @@ impl GatewareRenderer {
             self.quarters.triangles.add(&self.buffers[place].stats);
             self.start_quarter(frame, cpu)?;
         }
-        Ok(false)
+        Ok(Progress::Continued)
     }
 }
