@@ -66,8 +66,10 @@ fn face(frame: &MeshSetup, corners: &[Corner; 3], cull: bool) -> Biases {
 /// Not inlined, so that other faces do not load this code into the instruction cache.
 #[inline(never)]
 fn clipped_face(frame: &MeshSetup, corners: &[Corner; 3], cull: bool) -> Biases {
-    let polygon = clip(frame, corners.map(|(corner, _)| transform(frame, corner)));
-    let places = polygon.vertices().iter().map(|vertex| snap(frame, vertex));
+    let corners = corners.map(|(corner, _)| transform(frame, corner));
+    let mut space = Default::default();
+    let polygon = clip(frame, corners, &mut space);
+    let places = polygon.iter().map(|vertex| snap(frame, vertex));
     let places: Vec<_, MAX_VERTICES> = places.collect();
     let Some((first, rest)) = places.split_first() else {
         return Biases::default();

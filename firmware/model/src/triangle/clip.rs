@@ -4,6 +4,8 @@
 //! volume. The intersection of an edge with a plane is the exact point, rounded. The result does not depend on the direction of the edge,
 //! so two triangles that share an edge get the same vertex.
 
+use core::mem;
+
 use glint_core::camera::Projection;
 use heapless::Vec;
 
@@ -21,15 +23,15 @@ pub const MAX_VERTICES: usize = 28;
 pub trait Cut: Copy + Default {
     /// Position and light of the vertex.
     fn vertex(&self) -> &CameraVertex;
-    /// The vertex at the fraction `part`/`whole` of the way from `self` to `other`; `vertex` is the position and light of the result.
-    fn towards(&self, other: &Self, vertex: CameraVertex, part: u64, whole: u64) -> Self;
+    /// The vertex at a fraction of the way from `self` to `other`; `vertex` is the position and light of the result.
+    fn towards(&self, other: &Self, vertex: CameraVertex, fraction: &Fraction) -> Self;
 }
 
 impl Cut for CameraVertex {
     fn vertex(&self) -> &CameraVertex {
         self
     }
-    fn towards(&self, _: &Self, vertex: CameraVertex, _: u64, _: u64) -> Self {
+    fn towards(&self, _: &Self, vertex: CameraVertex, _: &Fraction) -> Self {
         vertex
     }
 }
@@ -47,10 +49,10 @@ impl Cut for TexturedVertex {
     fn vertex(&self) -> &CameraVertex {
         &self.vertex
     }
-    fn towards(&self, other: &Self, vertex: CameraVertex, part: u64, whole: u64) -> Self {
+    fn towards(&self, other: &Self, vertex: CameraVertex, fraction: &Fraction) -> Self {
         let coordinates = [0, 1].map(|i: usize| {
             let [a, b] = [self, other].map(|corner| i64::from(corner.coordinates[i]));
-            (a + portion(b - a, part, whole)) as i32
+            (a + fraction.of(b - a)) as i32
         });
         Self {
             vertex,
@@ -59,23 +61,8 @@ impl Cut for TexturedVertex {
     }
 }
 
-/// The polygon that remains of a triangle after clipping.
-#[derive(Clone, Debug, Default)]
-pub struct Polygon<C = CameraVertex> {
-    vertices: Vec<C, MAX_VERTICES>,
-}
-
-impl<C: Cut> Polygon<C> {
-    /// The vertices in order; fewer than three if no part of the triangle is inside the volume.
-    pub fn vertices(&self) -> &[C] {
-        &self.vertices
-    }
-
-    fn push(&mut self, vertex: C) {
-        // A clipped triangle has at most `MAX_VERTICES` vertices, so the push does not fail.
-        let _ = self.vertices.push(vertex);
-    }
-}
+/// The vertices of a polygon that remains of a triangle after clipping.
+pub type Polygon<C = CameraVertex> = Vec<C, MAX_VERTICES>;
 
 /// The planes of a volume, in the order of clipping.
 fn planes(volume: Volume) -> impl Iterator<Item = Plane> {
@@ -139,28 +126,31 @@ impl Plane {
 
     /// Writes the part of `polygon` inside the plane to `left`. If the whole polygon is inside, writes nothing and returns `false`.
     fn cut<C: Cut>(self, frame: &MeshSetup, polygon: &Polygon<C>, left: &mut Polygon<C>) -> bool {
-        let vertices = polygon.vertices();
-        let Some(mut from) = vertices.last() else {
+        let Some(mut from) = polygon.last() else {
             return false;
         };
-        if vertices
+        if polygon
             .iter()
             .all(|corner| self.distance(frame, corner.vertex()) >= 0)
         {
             return false;
         }
-        left.vertices.clear();
+        left.clear();
+        // A clipped triangle has at most `MAX_VERTICES` vertices, so the push does not fail.
+        let mut put = |vertex| {
+            let _ = left.push(vertex);
+        };
         let mut from_distance = self.distance(frame, from.vertex());
-        for to in vertices {
+        for to in polygon {
             let to_distance = self.distance(frame, to.vertex());
             match (from_distance >= 0, to_distance >= 0) {
-                (true, true) => left.push(*to),
+                (true, true) => put(*to),
                 (true, false) => {
-                    left.push(self.intersection(frame, from, from_distance, to, to_distance));
+                    put(self.intersection(frame, from, from_distance, to, to_distance));
                 }
                 (false, true) => {
-                    left.push(self.intersection(frame, to, to_distance, from, from_distance));
-                    left.push(*to);
+                    put(self.intersection(frame, to, to_distance, from, from_distance));
+                    put(*to);
                 }
                 (false, false) => {}
             }
@@ -172,9 +162,9 @@ impl Plane {
     /// The intersection of the plane with the edge from `from` to `to`. `from` is inside at the distance `da`, and `to` is outside at the
     /// distance `db`.
     fn intersection<C: Cut>(self, frame: &MeshSetup, from: &C, da: i64, to: &C, db: i64) -> C {
-        let (part, whole) = (da.unsigned_abs(), da.abs_diff(db));
+        let fraction = Fraction::new(da.unsigned_abs(), da.abs_diff(db));
         let (a, b) = (from.vertex(), to.vertex());
-        let between = |a: i64, b: i64| a + portion(b - a, part, whole);
+        let between = |a: i64, b: i64| a + fraction.of(b - a);
         let vertex = CameraVertex {
             x: between(a.x, b.x),
             y: between(a.y, b.y),
@@ -187,7 +177,7 @@ impl Plane {
                 .light
                 .zip_with(b.light, |a, b| between(a.into(), b.into()) as u16),
         };
-        from.towards(to, vertex, part, whole)
+        from.towards(to, vertex, &fraction)
     }
 }
 
@@ -222,13 +212,20 @@ pub fn off_picture<C: Cut>(frame: &MeshSetup, triangle: &[C; 3]) -> bool {
     off(|v| v.x, frame.width, across) || off(|v| v.y, frame.height, down)
 }
 
-/// Clips a triangle to the volume of the frame, starting with its first vertex.
-pub fn clip<C: Cut>(frame: &MeshSetup, triangle: [C; 3]) -> Polygon<C> {
-    let (mut polygon, mut left) = (Polygon::default(), Polygon::default());
-    triangle.into_iter().for_each(|vertex| polygon.push(vertex));
+/// Clips a triangle to the volume of the frame, starting with its first vertex. Returns the vertices of the remaining polygon in order;
+/// fewer than three if no part of the triangle is inside the volume. `space` is memory for the polygons before and after a plane, which are
+/// too large to be moved.
+pub fn clip<'a, C: Cut>(
+    frame: &MeshSetup,
+    triangle: [C; 3],
+    [polygon, left]: &'a mut [Polygon<C>; 2],
+) -> &'a [C] {
+    let (mut polygon, mut left) = (polygon, left);
+    polygon.clear();
+    polygon.extend(triangle);
     for plane in planes(frame.volume) {
-        if plane.cut(frame, &polygon, &mut left) {
-            core::mem::swap(&mut polygon, &mut left);
+        if plane.cut(frame, polygon, left) {
+            mem::swap(&mut polygon, &mut left);
         }
     }
     polygon
@@ -252,34 +249,66 @@ pub fn clip_edge(
     Some([a, b])
 }
 
-/// Computes x·part/whole to nearest, ties up, for part ≤ whole < 2^61 and whole > 0.
-///
-/// Long division: the product may have 100 bits, but the quotient is at most x.
-fn portion(x: i64, part: u64, whole: u64) -> i64 {
-    let size = x.unsigned_abs();
-    let (mut quotient, mut rest) = (0i64, 0u64);
-    for bit in (0..u64::BITS - size.leading_zeros()).rev() {
-        quotient *= 2;
-        rest = 2 * rest + part * (size >> bit & 1);
-        // rest < 2·whole + part ≤ 3·whole
-        while rest >= whole {
-            rest -= whole;
-            quotient += 1;
+/// A fraction `part`/`whole` from 0 to 1.
+#[derive(Clone, Copy, Debug)]
+pub struct Fraction {
+    part: u64,
+    whole: u64,
+    /// The fraction, rounded down, 48 fraction bits.
+    approximation: u64,
+}
+
+impl Fraction {
+    /// Fraction bits of the approximation.
+    const BITS: u32 = 48;
+
+    /// The fraction `part`/`whole`, for part ≤ whole < 2^61 and whole > 0.
+    fn new(part: u64, whole: u64) -> Self {
+        let (mut quotient, mut rest) = (0, part);
+        if rest >= whole {
+            (quotient, rest) = (1, 0);
+        }
+        for _ in 0..Self::BITS {
+            (quotient, rest) = (2 * quotient, 2 * rest);
+            if rest >= whole {
+                (quotient, rest) = (quotient + 1, rest - whole);
+            }
+        }
+        Self {
+            part,
+            whole,
+            approximation: quotient,
         }
     }
-    if x < 0 {
-        -quotient - i64::from(2 * rest > whole)
-    } else {
-        quotient + i64::from(2 * rest >= whole)
+
+    /// The fraction of `x`, to nearest, ties up, for |x| < 2^45.
+    ///
+    /// The product with the approximation is at most |x| / 2^48 < 1/8 too small, so its whole part is the exact quotient or the quotient
+    /// less 1. The rest of the division is less than 2·whole, so 64 bits hold it although both products may have more.
+    fn of(&self, x: i64) -> i64 {
+        let (size, low) = (x.unsigned_abs(), self.approximation & 0xffff_ffff);
+        let lower = (size >> 32) * low + (((size & 0xffff_ffff) * low) >> 32);
+        let mut quotient = (size * (self.approximation >> 32) + lower) >> (Self::BITS - 32);
+        let mut rest = size
+            .wrapping_mul(self.part)
+            .wrapping_sub(quotient.wrapping_mul(self.whole));
+        if rest >= self.whole {
+            (quotient, rest) = (quotient + 1, rest - self.whole);
+        }
+        if x < 0 {
+            -(quotient as i64) - i64::from(2 * rest > self.whole)
+        } else {
+            quotient as i64 + i64::from(2 * rest >= self.whole)
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::portion;
+    use super::Fraction;
 
     #[test]
-    fn portions_are_nearest_with_ties_up() {
+    fn fractions_are_nearest_with_ties_up() {
         let mut state = 1u64;
         let mut random = |bits: u32| {
             state = state
@@ -289,22 +318,24 @@ mod tests {
         };
         for round in 0..200_000u32 {
             // Half of the iterations use small numbers, for which many quotients are ties.
-            let (wide, long) = if round % 2 == 0 { (4, 5) } else { (61, 44) };
-            let whole = random(wide) + 1;
+            let (wide, long) = if round % 2 == 0 { (4, 5) } else { (61, 45) };
+            let whole = random(wide).max(1);
             let part = random(wide) % (whole + 1);
             let x = random(long) as i64 - (1 << (long - 1));
             let twice = 2 * i128::from(x) * i128::from(part) + i128::from(whole);
             let expected = twice.div_euclid(2 * i128::from(whole));
             assert_eq!(
-                i128::from(portion(x, part, whole)),
+                i128::from(Fraction::new(part, whole).of(x)),
                 expected,
                 "{x}·{part}/{whole}"
             );
         }
-        assert_eq!(portion(0, 0, 1), 0);
-        assert_eq!(
-            portion(-(1 << 44), (1 << 61) - 1, (1 << 61) - 1),
-            -(1 << 44)
-        );
+        assert_eq!(Fraction::new(0, 1).of(0), 0);
+        let (largest, longest) = ((1 << 61) - 1, (1 << 45) - 1);
+        for x in [-longest, longest] {
+            assert_eq!(Fraction::new(largest, largest).of(x), x);
+            assert_eq!(Fraction::new(largest - 1, largest).of(x), x);
+            assert_eq!(Fraction::new(1, largest).of(x), 0);
+        }
     }
 }

@@ -393,8 +393,8 @@ fn fan<C: Cut, R>(
     if off_picture(frame, &vertices) {
         return;
     }
-    let polygon = clip(frame, vertices);
-    let mut left = polygon.vertices().iter().map(corner);
+    let mut space = Default::default();
+    let mut left = clip(frame, vertices, &mut space).iter().map(corner);
     let (Some(first), Some(mut last)) = (left.next(), left.next()) else {
         return;
     };

@@ -34,6 +34,7 @@ mod wireframe;
 use glint_core::fixed::Q8_24;
 use glint_core::matrix::Matrix;
 use glint_core::mesh::Mesh;
+use glint_model::triangle::clip::{Polygon, clip};
 use glint_model::triangle::vertex::{CameraVertex, transform};
 use glint_model::{MeshSetup, MeshSubject, Object, Placement, SIZES, ScreenVertex};
 use glint_vectors::{Camera, Model, Random};
@@ -55,6 +56,12 @@ fn cube() -> Mesh<'static> {
 /// A vector with random components.
 fn any_vector(random: &mut Random) -> [i16; 3] {
     [0; 3].map(|_| random.integer(-32768, 32767) as i16)
+}
+
+/// The polygon that remains of a triangle after clipping.
+fn clipped(frame: &MeshSetup, triangle: [CameraVertex; 3]) -> Polygon {
+    let mut space = Default::default();
+    clip(frame, triangle, &mut space).iter().copied().collect()
 }
 
 /// The constants of a frame with a random camera and size.

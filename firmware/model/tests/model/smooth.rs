@@ -1,7 +1,6 @@
 //! Tests of exact properties of smooth shading. `tools/reference` measures the errors of smooth shading.
 
 use glint_core::colour::{Rgb565, Rounding};
-use glint_model::triangle::clip::clip;
 use glint_model::triangle::quotient::{INVERSE, colour};
 use glint_model::triangle::raster::draw;
 use glint_model::triangle::setup::{Facing, Setup};
@@ -10,7 +9,7 @@ use glint_model::triangle::vertex::CameraVertex;
 use glint_vectors::triangles::{SIZE, random_triangle, set_up};
 use glint_vectors::{Picture, Random};
 
-use crate::{any_vector, random_frame, random_vertex};
+use crate::{any_vector, clipped, random_frame, random_vertex};
 
 fn any_colour(random: &mut Random) -> Rgb565 {
     Rgb565(random.bits() as u16)
@@ -117,8 +116,8 @@ fn cut_edges_have_light_in_between() {
                 ..random_vertex(&mut random, &frame)
             }
         });
-        for end in clip(&frame, [a, b, b]).vertices() {
-            assert!(clip(&frame, [b, a, c]).vertices().contains(end));
+        for end in &clipped(&frame, [a, b, b]) {
+            assert!(clipped(&frame, [b, a, c]).contains(end));
             if *end == a || *end == b {
                 continue;
             }

@@ -118,8 +118,8 @@ fn vertex_beside_eye(position: [i16; 3]) -> Result<Outcome> {
         let inside = [[0, 8192, 0], [2000, 9000, 0]].map(|p| transform(&frame, p));
         let vertex = transform(&frame, position);
         ensure!(vertex.z == 0, "{position:?} is not in the plane of the eye");
-        let polygon = clip(&frame, [inside[0], vertex, inside[1]]);
-        let vertices = polygon.vertices();
+        let mut space = Default::default();
+        let vertices = clip(&frame, [inside[0], vertex, inside[1]], &mut space);
         if vertices.len() < 3 || vertices.iter().any(|v| v.z < frame.near) {
             return Ok(Outcome::exact(format!("{vertices:?}")));
         }
