@@ -17,6 +17,7 @@ mod motions;
 mod objects;
 mod panel;
 mod rays;
+mod samples;
 mod steering;
 mod texts;
 mod textures;
@@ -46,6 +47,7 @@ pub fn all() -> Vec<Kind> {
         objects::kinds(),
         panel::kinds(),
         rays::kinds(),
+        samples::kinds(),
         steering::kinds(),
         texts::kinds(),
         textures::kinds(),
