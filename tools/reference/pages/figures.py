@@ -364,6 +364,10 @@ def index(read, blocks):
     for column, value, name, anchor, unit in [
         ("family", "depth", "stored depth", "stored-depth", "of the depth"),
         ("family", "colour", "stored colour", "stored-colour", "/255"),
+        ("family", "fog", "share of fog", "fog", "/255"),
+        ("family", "sky", "colour of a sky", "sky", "/255"),
+        ("family", "luminance", "luminance", "luminance", "/255"),
+        ("family", "line", "end of a line", "end-of-a-line", "px"),
         ("kernel", "vertex", "word of a vertex", "number-formats-of-the-pipeline", "px"),
         ("kernel", "basis", "word of the camera's axes", "number-formats-of-the-pipeline", "px"),
         ("kernel", "inverse", "word of 1/z", "number-formats-of-the-pipeline", "px"),

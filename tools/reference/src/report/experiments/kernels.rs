@@ -1,6 +1,7 @@
-//! Errors and cycles of kernels that have no page of their own: reciprocals, roots, lengths, quotients, depth codes, colours, and the
-//! number formats of the pipeline's stages.
+//! Errors and cycles of kernels that have no page of their own: reciprocals, roots, lengths, quotients, depth codes, colours, the
+//! number formats of the pipeline's stages, fog, sky, luminance and the ends of lines.
 
+mod appearance;
 mod arithmetic;
 mod formats;
 mod pixels;
@@ -51,7 +52,7 @@ type Family = (&'static str, fn(u32) -> Result<Vec<Trial>>);
 /// # Errors
 /// When the terminal refuses a progress bar, or a camera is invalid.
 pub fn measure(thinning: u32, cycles: &Cycles) -> Result<Vec<Row>> {
-    let families: [Family; 9] = [
+    let families: [Family; 13] = [
         ("reciprocal", |thinning| {
             Ok(arithmetic::reciprocals(thinning))
         }),
@@ -65,6 +66,10 @@ pub fn measure(thinning: u32, cycles: &Cycles) -> Result<Vec<Row>> {
         ("depth", pixels::depths),
         ("colour", |thinning| Ok(pixels::colours(thinning))),
         ("format", formats::formats),
+        ("fog", appearance::fogs),
+        ("sky", appearance::skies),
+        ("luminance", |thinning| Ok(appearance::luminances(thinning))),
+        ("line", appearance::lines),
     ];
     let bar = progress::bar(families.len() as u64)?;
     let mut rows = Vec::new();
