@@ -17,6 +17,8 @@ use crate::camera::Camera;
 
 /// Largest product of density and depth that is measured: the fog hides all but 0.03 % there.
 const DENSEST: f64 = 8.0;
+/// Bits of the whole pixels of a position in the guard band, with the sign.
+const WHOLE: u32 = 12;
 /// Number of measured depths, and of measured lines.
 const INPUTS: u32 = 1 << 16;
 
@@ -232,7 +234,7 @@ pub fn luminances(thinning: u32) -> Vec<Trial> {
 }
 
 /// Measures the errors of the ends of a wireframe's lines, in pixels of a picture 640 wide, for random points behind the view plane. The
-/// cost is the number of fraction bits of a position.
+/// cost is the number of bits of a position, [`WHOLE`] of which are whole pixels.
 pub fn lines(thinning: u32) -> Result<Vec<Trial>> {
     let program =
         assemble("eye 0 0 4\nplane 1\nwindow -2 -1.125 2 1.125\nsegment 0 0 0 1 1 0\nend\n")?;
@@ -268,7 +270,7 @@ pub fn lines(thinning: u32) -> Result<Vec<Trial>> {
             "line_end_rounded",
             format!("{bits} fraction bits, {name}"),
             false,
-            bits,
+            WHOLE + bits,
             sweep(&found),
         )
     };
@@ -282,7 +284,7 @@ pub fn lines(thinning: u32) -> Result<Vec<Trial>> {
         "line_end",
         "8 fraction bits, to nearest, of a quotient".to_owned(),
         true,
-        8,
+        WHOLE + 8,
         sweep(&|point| {
             let point = point.map(Q12_20::from_num);
             let [end, _] = projection.line([point, point])?;
