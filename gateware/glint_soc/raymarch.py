@@ -206,8 +206,8 @@ class Raymarcher(LiteXModule):
                    for number, what in enumerate([*(f"faces whose normal points {way} {axis}" for axis in "xyz"
                                                     for way in ("against", "along")), "undecided rays", "the zenith"])]
         self._horizon = Parameter(24, name="horizon", description="Colour of the horizon, and of the fog.")
-        self._fog_shift = Parameter(3, name="fog_shift", description="Exponent of the depth step of the fog: an entry covers "
-                                     "2^fog_shift field units times 2^e.")
+        self._fog_shift = Parameter(3, name="fog_shift", description="Exponent of the range of the fog: the table covers "
+                                     "2^(8 + fog_shift) field units times 2^e.")
         self._table = Parameter(name="table", fields=[
             CSRField("part", size=8, offset=0, description="Share, in 255ths."),
             CSRField("entry", size=9, offset=8, description="0 to 255: share hidden by fog, by depth. 256 to 511: remaining share of "

@@ -5809,7 +5809,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5918) }
         }
 
-        /// `fog_shift`, 3 bits: Exponent of the depth step of the fog: an entry covers 2^fog_shift field units times 2^e. Reads as 0.
+        /// `fog_shift`, 3 bits: Exponent of the range of the fog: the table covers 2^(8 + fog_shift) field units times 2^e. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn fog_shift(&self) -> Register<u8, ReadWrite> {

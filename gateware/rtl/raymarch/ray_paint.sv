@@ -79,13 +79,21 @@ module ray_paint #(
         .clk, .mantissa(depth_mantissa), .exponent(depth_exponent), .depth(depth_5), .code(code_28)
     );
 
-    // Indices into the tables of fog and light in clock 7, and the entries of the tables in clock 9.
-    logic [18:0] deep_6;
-    logic [7:0]  fog_entry_7, fog_9, light_9, height_9, steps_7;
+    // Indices into the tables of fog and light in clock 7, and the entries of the tables in clock 9. The steps of the table of fog are equal
+    // in its first 32 entries, and twice as long in each further 32 entries: the index has an exponent of three bits and five bits below the
+    // leading bit of the depth.
+    logic [22:0] deep_6;
+    logic [7:0]  fog_entry_6, fog_entry_7, fog_9, light_9, height_9, steps_7;
+
+    always_comb begin
+        fog_entry_6 = {3'd0, deep_6[4:0]};
+        for (int unsigned k = 0; k < 7; k++) if (deep_6[k + 5]) fog_entry_6 = {3'(k + 1), deep_6[k +: 5]};
+        if (deep_6[22:12] != '0) fog_entry_6 = '1;
+    end
 
     always_ff @(posedge clk) begin
-        deep_6      <= depth_5[39:21] >> fog_shift;
-        fog_entry_7 <= deep_6[18:8] != '0 ? '1 : deep_6[7:0];
+        deep_6      <= depth_5[39:17] >> fog_shift;
+        fog_entry_7 <= fog_entry_6;
     end
 
     delay #(.WIDTH(8), .CLOCKS(7 - BEGIN)) steps_wait (.clk, .enable(1'b1), .in(in_end.steps), .out(steps_7));
@@ -242,7 +250,7 @@ module ray_paint #(
 
     assign out_mask = 8'b1 << number;
 
-    wire _unused = &{1'b0, in_end, depth_5[39:21], place_29.odd, line_times_5[8], stride[5:0]};
+    wire _unused = &{1'b0, in_end, depth_5[39:17], place_29.odd, line_times_5[8], stride[5:0]};
 endmodule
 
 `default_nettype wire

@@ -28,26 +28,52 @@ impl Palette {
     /// value. The last entry is also used for all larger depths.
     #[must_use]
     pub fn with_fog(self, setup: &FieldSetup, density: U4_28) -> Self {
-        // Selects the smallest depth step for which 256 steps reach a transmittance of e^−8, or the largest step if none does.
+        // Selects the smallest range of depths at whose end the transmittance is e^−8, or the largest range if none has this.
         const ENOUGH: u64 = 8 << 32;
         let unit = fog_of_unit(setup, density);
         let fog_shift = (0..7).find(|shift| unit << (shift + 8) >= ENOUGH);
         let fog_shift = fog_shift.unwrap_or(7);
-        // The first entry is for the depth of half a step, and each further entry is one step deeper.
-        let half = faded((unit << fog_shift) / 2);
-        let whole = product(half, half);
-        let mut left = half;
-        Self {
-            fog: core::array::from_fn(|_| {
+        // The transmittances of half a step and of a step. The first entry is for the depth of half a step.
+        let mut half = faded((unit << fog_shift) >> (FINE_LOG2 + 1));
+        let mut whole = product(half, half);
+        let (mut left, mut fog) = (FULL, [0; 256]);
+        for (part, entries) in fog.chunks_exact_mut(EQUAL).enumerate() {
+            if part > 1 {
+                (half, whole) = (whole, product(whole, whole));
+            }
+            left = product(left, half);
+            for (number, entry) in entries.iter_mut().enumerate() {
+                if number > 0 {
+                    left = product(left, whole);
+                }
                 let hidden = FULL - left;
-                left = product(left, whole);
-                ((u128::from(hidden) * 255 + (1 << 61)) >> 62) as u8
-            }),
+                *entry = ((u128::from(hidden) * 255 + (1 << 61)) >> 62) as u8;
+            }
+            left = product(left, half);
+        }
+        Self {
+            fog,
             fog_shift,
             ..self
         }
     }
+
+    /// The entry of the table `fog` for a depth with 21 fraction bits.
+    ///
+    /// The steps of the first 32 entries are equal, and those of each further 32 entries twice as long, because the fog changes most in
+    /// front.
+    pub fn fog_at(&self, depth: u64) -> u8 {
+        let steps = (depth >> (21 - FINE_LOG2 + self.fog_shift)).min((1 << 12) - 1) as usize;
+        let octave = (steps / EQUAL).checked_ilog2().unwrap_or(0) as usize;
+        let index = EQUAL * octave + (steps >> octave);
+        self.fog.get(index).copied().unwrap_or(u8::MAX)
+    }
 }
+
+/// Number of entries of the table of fog with equal steps.
+const EQUAL: usize = 32;
+/// Base-2 logarithm of the number of first steps of the table of fog in a depth of 2^`fog_shift`.
+const FINE_LOG2: u32 = 4;
 
 /// 1.0 with 62 fraction bits.
 pub(crate) const FULL: u64 = 1 << 62;

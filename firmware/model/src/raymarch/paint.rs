@@ -12,14 +12,11 @@ pub fn paint(setup: &FieldSetup, palette: &Palette, end: &RayEnd) -> [u8; 3] {
     let (colour, light, fog) = match end.state {
         State::Undecided => return palette.undecided,
         State::Miss => (palette.zenith, 255, 255 - end.height),
-        State::Hit(surface) => {
-            let depth = end.depth >> (21 + palette.fog_shift);
-            (
-                surface_colour(setup, palette, end, surface),
-                palette.occlusion[end.steps.min(255) as usize],
-                palette.fog[depth.min(255) as usize],
-            )
-        }
+        State::Hit(surface) => (
+            surface_colour(setup, palette, end, surface),
+            palette.occlusion[end.steps.min(255) as usize],
+            palette.fog_at(end.depth),
+        ),
     };
     let lit = colour.map(|part| ((i32::from(part) * whole(light)) >> 8) as u8);
     mixed(lit, palette.horizon, fog)

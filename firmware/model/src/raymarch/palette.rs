@@ -25,10 +25,10 @@ pub struct Palette {
     pub zenith: [u8; 3],
     /// Colour of the sky at the horizon and below, and of the fog.
     pub horizon: [u8; 3],
-    /// Fraction of a surface's colour that fog replaces, in 255ths. The index is the hit's depth along n times 2^−`fog_shift`, rounded
-    /// down; depths are in field units multiplied by 2^e (docs/formats/raymarch.md, "Rays" and "Ends").
+    /// Fraction of a surface's colour that fog replaces, in 255ths, by the hit's depth along n ([`fog_at`](Self::fog_at)).
     pub fog: [u8; 256],
-    /// Exponent of the depth step of the table `fog`, 0 to 7.
+    /// The table `fog` covers depths up to 2^(8 + `fog_shift`); 0 to 7. Depths are in field units multiplied by 2^e
+    /// (docs/formats/raymarch.md, "Rays" and "Ends").
     pub fog_shift: u32,
     /// Fraction of the light that occlusion leaves at a surface, in 255ths. The index is the number of steps of the ray, because rays take
     /// many steps in narrow gaps.

@@ -32,18 +32,27 @@ fn fog_falls_off_as_e_to_its_depth() {
             let density: U4_28 = density.parse().unwrap();
             let palette = Palette::default().with_fog(&setup, density);
             let units = setup.scale.to_num::<f64>() * f64::from(1 << setup.exponent);
-            let step = f64::from(1 << palette.fog_shift) / units;
-            let mut most = 0;
-            for (i, &fog) in palette.fog.iter().enumerate() {
-                let z = (i as f64 + 0.5) * step;
-                let hidden = 255.0 * (1.0 - (-density.to_num::<f64>() * z).exp());
+            // The steps are a sixteenth of 2^fog_shift units long, and twice as long in each 32 entries after the first 64.
+            let first = f64::from(1 << palette.fog_shift) / 16.0;
+            let steps = (0..256).map(|i: i32| first * f64::from((i / 32 - 1).max(0)).exp2());
+            let (mut most, mut start) = (0, 0.0);
+            for ((i, step), &fog) in steps.enumerate().zip(&palette.fog) {
+                let middle = start + step / 2.0;
+                let hidden = 255.0 * (1.0 - (-density.to_num::<f64>() * middle / units).exp());
                 assert!(
                     (f64::from(fog) - hidden).abs() < 0.51,
                     "{field} {density} {i}: {fog} {hidden}"
                 );
                 assert!(fog >= most, "fog decreases with depth");
-                most = fog;
+                // The first and the last depth of the entry's range.
+                let fine = 21_f64.exp2();
+                for depth in [start * fine, (start + step) * fine - 1.0] {
+                    assert_eq!(palette.fog_at(depth as u64), fog, "{field} {density} {i}");
+                }
+                (most, start) = (fog, start + step);
             }
+            assert_eq!(start, f64::from(256 << palette.fog_shift));
+            assert_eq!(palette.fog_at(1 << 40), most);
             assert!(most == 255 || palette.fog_shift == 7, "{field} {density}");
         }
     }

@@ -76,15 +76,14 @@ pub fn fogs(thinning: u32) -> Result<Vec<Trial>> {
             sweep(&share),
         )
     };
-    let mut trials: Vec<_> = [64, 128].map(steps).into();
+    let mut trials: Vec<_> = [64, 128, 256, 512, 1024].map(steps).into();
     trials.push(trial(
         "fog_field",
-        "256 equal steps, of fields".to_owned(),
+        "32 equal steps, 32 steps in each of 7 octaves, of fields".to_owned(),
         true,
         8 * 256,
         of_field(sweep)?,
     ));
-    trials.extend([512, 1024].map(steps));
     trials.extend([16, 32, 64].map(octaves));
     trials.push(trial(
         "fog_mesh",
@@ -104,12 +103,12 @@ fn of_field(sweep: impl Fn(&dyn Fn(f64) -> f64) -> Errors) -> Result<Errors> {
     let setup = FieldSetup::new(&field, &view, (640, 360), &FieldOptions::of(&field))?;
     let density = U4_28::from_num(0.5);
     let palette = Palette::default().with_fog(&setup, density);
-    // The product of density and depth at a depth of 1 in the table's index.
-    let unit = density.to_num::<f64>() / setup.scale.to_num::<f64>()
-        * f64::from(palette.fog_shift as i32 - setup.exponent as i32).exp2();
+    // The product of density and depth at a depth of one field unit times 2^e.
+    let unit =
+        density.to_num::<f64>() / (setup.scale.to_num::<f64>() * f64::from(setup.exponent).exp2());
+    let fine = 21_f64.exp2();
     Ok(sweep(&|x| {
-        let index = ((x / unit) as usize).min(palette.fog.len() - 1);
-        f64::from(palette.fog[index])
+        f64::from(palette.fog_at((x / unit * fine) as u64))
     }))
 }
 
