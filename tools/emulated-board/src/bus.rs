@@ -94,18 +94,16 @@ impl Bus {
     /// Loads the word that contains `address`.
     pub fn load(&mut self, address: u32, now: u64) -> Access {
         let address = address & !3;
-        if let Some(word) = self.memory_word(address) {
-            return Access::memory(word);
-        }
-        match place(address) {
-            Target::Register(offset) => Access {
+        if let Target::Register(offset) = place(address) {
+            return Access {
                 value: self.devices.read(offset, now, &mut self.ram),
                 cycles: 0,
                 device: true,
-            },
-            Target::Rom(_) | Target::Sram(_) | Target::Flash(_) | Target::Unused => {
-                self.time_out(if address < IO { LINE } else { 1 })
-            }
+            };
+        }
+        match self.memory_word(address) {
+            Some(word) => Access::memory(word),
+            None => self.time_out(if address < IO { LINE } else { 1 }),
         }
     }
 

@@ -48,6 +48,18 @@ const BLOCKS: [(usize, Option<Interrupt>); 13] = [
     (digits::Digits::BASE, None),
 ];
 
+/// Index in `BLOCKS` of the block in each window, if any.
+const NUMBERS: [Option<u8>; (REGISTERS.size / WINDOW) as usize] = {
+    let mut numbers = [None; (REGISTERS.size / WINDOW) as usize];
+    let mut number = 0;
+    while number < BLOCKS.len() {
+        let window = (BLOCKS[number].0 as u32 - REGISTERS.base) / WINDOW;
+        numbers[window as usize] = Some(number as u8);
+        number += 1;
+    }
+    numbers
+};
+
 /// Index of the triangle engine in `BLOCKS`.
 const TRIANGLE: usize = 9;
 /// Index of the raymarcher in `BLOCKS`.
@@ -75,6 +87,8 @@ pub struct Devices {
     pub digits: Digits,
     /// Cycle of the next event of each block.
     next: [u64; BLOCKS.len()],
+    /// The smallest element of `next`.
+    first: u64,
     /// Levels of the interrupt lines.
     lines: u32,
 }
@@ -99,6 +113,7 @@ impl Devices {
             digits: Digits::default(),
             // Each block returns its next event at the first call of `advance`.
             next: [0; BLOCKS.len()],
+            first: 0,
             lines: 0,
         }
     }
@@ -114,7 +129,7 @@ impl Devices {
         self.scanout.reset();
         self.triangle.reset();
         self.gesture.reset();
-        self.next = [0; BLOCKS.len()];
+        (self.next, self.first) = ([0; BLOCKS.len()], 0);
     }
 
     fn device(&mut self, number: usize) -> &mut dyn Device {
@@ -137,13 +152,19 @@ impl Devices {
 
     /// The block at byte `offset` of the register region, and the offset of the register in the block.
     fn find(offset: u32) -> Option<(usize, u32)> {
-        let base = (REGISTERS.base + offset / WINDOW * WINDOW) as usize;
-        let number = BLOCKS.iter().position(|&(first, _)| first == base)?;
-        Some((number, offset % WINDOW))
+        let number = NUMBERS[(offset / WINDOW) as usize]?;
+        Some((number.into(), offset % WINDOW))
     }
 
     fn update(&mut self, number: usize, now: u64, ram: &mut MainMemory) {
-        self.next[number] = self.device(number).advance(now, ram);
+        let next = self.device(number).advance(now, ram);
+        let last = std::mem::replace(&mut self.next[number], next);
+        // Most updates keep a block's next event, and a program that polls a register makes many of them.
+        if next < self.first {
+            self.first = next;
+        } else if last == self.first && next != last {
+            self.first = self.next.into_iter().min().unwrap_or(u64::MAX);
+        }
         self.update_line(number);
         if number == TRIANGLE {
             self.update_line(RAYMARCH);
@@ -173,12 +194,14 @@ impl Devices {
 
     /// Processes all events up to the cycle `now`; returns the cycle of the next event.
     pub fn advance(&mut self, now: u64, ram: &mut MainMemory) -> u64 {
-        for number in 0..BLOCKS.len() {
-            if self.next[number] <= now {
-                self.update(number, now, ram);
+        if self.first <= now {
+            for number in 0..BLOCKS.len() {
+                if self.next[number] <= now {
+                    self.update(number, now, ram);
+                }
             }
         }
-        self.next.into_iter().min().unwrap_or(u64::MAX)
+        self.first
     }
 
     /// Processes events while the CPU sleeps, until an interrupt line changes or the cycle `end` is reached. Returns the cycle in which

@@ -29,6 +29,9 @@ fn pages(memory: Memory) -> usize {
     memory.size.div_ceil(PAGE) as usize
 }
 
+/// A page without decoded instructions. A call of its own, so that the callers of [`InstructionCache::page`] need no page on their stack.
+#[cold]
+#[inline(never)]
 fn empty() -> Box<Page> {
     Box::new([Instruction::UNKNOWN; PAGE as usize / 4])
 }
