@@ -29,7 +29,8 @@ def flags(folder, waveforms=False):
     values = {"SC": 0, "COVERAGE": 0, "TIMING": 0, "TRACE": int(waveforms), "TRACE_VCD": int(waveforms)}
     includes = [folder, HARNESS, _INCLUDE, _INCLUDE / "vltstd"]
     return ["-std=gnu++20", "-fPIC", "-fvisibility=hidden", "-pthread", "-w", *(f"-DVM_{key}={value}" for key, value in values.items()),
-            "-DMODEL=Vmodel", '-DMODEL_HEADER="Vmodel.h"', *(f"-I{include}" for include in includes)]
+            "-DMODEL=Vmodel", '-DMODEL_HEADER="Vmodel.h"', "-DMODEL_EVAL=Vmodel___024root___eval",
+            *(f"-I{include}" for include in includes)]
 
 
 def verilate(top, sources, parameters, folder, options):

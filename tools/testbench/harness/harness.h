@@ -1,7 +1,8 @@
 // Harness of a verilated design: one instance of the model with its own Verilator context. Every library of a design contains
 // this code; interface.h adds the C interface.
 //
-// The build defines MODEL as the class of the verilated model, and MODEL_HEADER as the header of that class.
+// The build defines MODEL as the class of the verilated model, MODEL_HEADER as the header of that class, and MODEL_EVAL as the function
+// that its method `eval` calls to evaluate the design.
 
 #pragma once
 
@@ -10,11 +11,14 @@
 
 #include MODEL_HEADER
 #include "verilated.h"
+
 #if VM_TRACE_VCD
 #include <memory>
 
 #include "verilated_vcd_c.h"
 #endif
+
+void MODEL_EVAL(decltype(MODEL::rootp));
 
 // Initial values of registers that have no reset.
 enum class Registers { ZERO, NOISE };
@@ -22,6 +26,7 @@ enum class Registers { ZERO, NOISE };
 struct Harness {
     VerilatedContext context;
     MODEL top;
+    bool is_initialised = false;
     // Time units by which each evaluation advances the time in the waveforms.
     uint64_t step = 1;
 #if VM_TRACE_VCD
@@ -51,10 +56,19 @@ struct Harness {
     }
 
     void eval() {
-        top.eval();
 #if VM_TRACE_VCD
+        top.eval();
         if (trace) trace->dump(context.time());
         context.timeInc(step);
+#else
+        // The method is necessary only before the first evaluation: then it sets the initial values. Each call also takes locks, for
+        // messages and for deleted objects, of which the designs have none.
+        if (is_initialised) {
+            MODEL_EVAL(top.rootp);
+        } else {
+            top.eval();
+            is_initialised = true;
+        }
 #endif
     }
 
