@@ -229,7 +229,7 @@ impl MainLoop {
         turn
     }
 
-    /// Moves the wireframe by one key request, if a frame can be drawn, so that each frame has at most one step.
+    /// Moves the wireframe by one key request, or to its start, if a frame can be drawn, so that each frame has at most one step.
     fn step(&mut self) -> Turn {
         let machine = &mut self.machine;
         if !WIREFRAME.is_built
@@ -239,6 +239,13 @@ impl MainLoop {
             || machine.needs_picture()
         {
             return Turn::Wait;
+        }
+        if machine.keypad.take_reset() {
+            // Another scene may have been shown since the buttons were pressed.
+            if machine.scene.wireframe().is_some() {
+                machine.scene.show_wireframe();
+            }
+            return Turn::Again;
         }
         let (Some(devices), Some(key)) = (&machine.devices, machine.keypad.take()) else {
             return Turn::Wait;

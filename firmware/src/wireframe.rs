@@ -1,5 +1,7 @@
 //! The keys of the wireframe simulator on the board's buttons.
 
+use core::mem;
+
 use glint_core::wireframe::{Debouncer, Key, Requests};
 use glint_hal::timer::Clock;
 
@@ -7,6 +9,9 @@ use glint_hal::timer::Clock;
 const ROTATE: u16 = 1 << 0;
 /// Switch 1: the buttons up and down act as the keys zoom-in and zoom-out.
 const ZOOM: u16 = 1 << 1;
+
+/// Buttons 2 and 3, left and right, which together read the program again.
+const RESET: u8 = 0b1100;
 
 /// The keys of buttons 0 to 3.
 const ARROWS: [Key; 4] = [Key::Up, Key::Down, Key::Left, Key::Right];
@@ -16,6 +21,8 @@ const ARROWS: [Key; 4] = [Key::Up, Key::Down, Key::Left, Key::Right];
 pub struct Keypad {
     debouncer: Debouncer,
     requests: Requests,
+    /// Whether the program is to be read again before the next frame.
+    resets: bool,
 }
 
 impl Keypad {
@@ -26,8 +33,14 @@ impl Keypad {
         self.debouncer.sample(now_ms, buttons)
     }
 
-    /// Adds the requests of pressed buttons.
+    /// Adds the requests of pressed buttons. Buttons 2 and 3 together request that the program is read again, in place of all pending keys:
+    /// a person presses one of the two first, whose step the new start takes back.
     pub fn press(&mut self, pressed: u8, switches: u16) {
+        if pressed & RESET != 0 && self.debouncer.levels() & RESET == RESET {
+            self.requests = Requests::default();
+            self.resets = true;
+            return;
+        }
         let zoom = switches & ZOOM != 0;
         for (button, key) in ARROWS.into_iter().enumerate() {
             let key = match key {
@@ -46,9 +59,14 @@ impl Keypad {
         self.requests.take()
     }
 
-    /// Whether a key request waits for a frame.
+    /// Removes the request to read the program again, and returns whether there was one.
+    pub const fn take_reset(&mut self) -> bool {
+        mem::replace(&mut self.resets, false)
+    }
+
+    /// Whether a request waits for a frame.
     pub const fn has_request(&self) -> bool {
-        !self.requests.is_empty()
+        self.resets || !self.requests.is_empty()
     }
 
     /// Whether a button's level is changing, so that the next sample should follow soon.

@@ -6,7 +6,11 @@ const SEGMENTS = [
   "M6 54V92L16 82V56L10 50Z", "M6 8V46L10 50L16 44V18Z", "M16 46H44L48 50L44 54H16L12 50Z",
 ];
 // The function of each button, from docs/boards.md.
-const BUTTONS = ["fire 1", "fire 2", "left: calibrate the sensor", "right: recentre the camera"];
+const BUTTONS = [
+  "fire 1", "fire 2",
+  "left: calibrate the sensor; together with BTN3 start the wireframe again",
+  "right: recentre the camera; together with BTN2 start the wireframe again",
+];
 const VALUES = [0x3f, 0x06, 0x5b, 0x4f, 0x66, 0x6d, 0x7d, 0x07, 0x7f, 0x6f, 0x77, 0x7c, 0x39, 0x5e, 0x79, 0x71];
 
 function shape(name, attributes) {
@@ -59,6 +63,13 @@ export function startPanel(send) {
     const next = isDown ? pressed | (1 << number) : pressed & ~(1 << number);
     if (next !== pressed) send({ type: "buttons", pressed: (pressed = next) });
   };
+  // With Shift a button stays pressed until its next press, so that one mouse can press two buttons together.
+  let kept = 0;
+  const begin = (number, { shiftKey }) => {
+    kept = shiftKey ? kept | (1 << number) : kept & ~(1 << number);
+    press(number, true);
+  };
+  const end = (number) => (kept >> number) & 1 || press(number, false);
   const isKey = ({ key }) => key === " " || key === "Enter";
   const buttons = BUTTONS.map((purpose, number) => {
     const button = document.createElement("button");
@@ -68,11 +79,11 @@ export function startPanel(send) {
     button.setAttribute("aria-label", `button ${number}, ${purpose}`);
     button.addEventListener("pointerdown", (event) => {
       button.setPointerCapture(event.pointerId);
-      press(number, true);
+      begin(number, event);
     });
-    for (const end of ["pointerup", "pointercancel", "blur"]) button.addEventListener(end, () => press(number, false));
-    button.addEventListener("keydown", (event) => isKey(event) && press(number, true));
-    button.addEventListener("keyup", (event) => isKey(event) && press(number, false));
+    for (const name of ["pointerup", "pointercancel", "blur"]) button.addEventListener(name, () => end(number));
+    button.addEventListener("keydown", (event) => isKey(event) && begin(number, event));
+    button.addEventListener("keyup", (event) => isKey(event) && end(number));
     return button;
   });
   element("buttons").append(...buttons);
@@ -108,7 +119,7 @@ export function startPanel(send) {
   }
 
   // Clears the pressed buttons; the board's side releases them when control passes to another page.
-  const release = () => (pressed = 0);
+  const release = () => (pressed = kept = 0);
 
   return { show, release };
 }

@@ -118,6 +118,11 @@ impl Debouncer {
         settled & self.levels
     }
 
+    /// The debounced levels, 1 for a pressed button.
+    pub const fn levels(&self) -> u8 {
+        self.levels
+    }
+
     /// Whether a level is changing, so the next sample should follow soon.
     pub const fn is_changing(&self) -> bool {
         self.changing != 0

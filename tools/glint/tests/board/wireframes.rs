@@ -27,6 +27,13 @@ fn cube() -> Vec<u8> {
     wireframe::make(cube, Some(4.0), &viewing).unwrap().bytes
 }
 
+/// A program of two segments.
+fn cross() -> Vec<u8> {
+    let text = "eye 0 0 4\nplane 2\nwindow -2 -1.125 2 1.125\nsegment -1 0 1 1 0.5 1\nsegment 0 -1 1 0 1 4\nend\n";
+    let program = wireframe::parse(wireframe::Form::Text, text.into());
+    program.unwrap().bytes
+}
+
 /// The model's picture of a program after a motion.
 fn picture(program: &[u8], motion: &Motion) -> Vec<u16> {
     let subject = Subject::Wireframe(WireframeSubject {
@@ -140,14 +147,54 @@ fn a_session_with_buttons() {
     assert!(shown(&mut console)[0] == picture(&program, &motion));
 }
 
+/// Buttons 2 and 3 together read the program again, with any switches. The first of the two moves the segments until then.
+#[test]
+fn two_buttons_read_the_program_again() {
+    let mut board = emulator();
+    let mut console = console(&mut board);
+    let program = cross();
+    let quiet = &mut |_, _| {};
+    transfer::upload_for(&mut console, "program", &program, 1, quiet, &mut |_| {}).unwrap();
+    console.command("quality fast").unwrap();
+    console.command("render").unwrap();
+    let start = picture(&program, &Motion::default());
+    for switches in 0..4 {
+        console.board().inner().set_switches(switches);
+        let mut motion = Motion::default();
+        let rotates = switches & 1 != 0;
+        buttons(&mut console, &[(1 << 2, 25)]);
+        assert!(motion.apply(Key::Left.step(rotates)));
+        assert!(shown(&mut console)[0] == picture(&program, &motion));
+        // A third key that is pressed at the same time does not move the new start.
+        let both = [(0b0100, 1), (0b1101, 1), (0b0101, 1), (0b1101, 40)];
+        buttons(&mut console, &both);
+        assert!(shown(&mut console)[0] == start, "{switches}");
+        // One button that stays pressed moves the segments only once; the other one then reads the program again.
+        buttons(&mut console, &[(1 << 3, 60), (0b1100, 25), (1 << 2, 25)]);
+        assert!(shown(&mut console)[0] == start, "{switches}");
+        buttons(&mut console, &[(1 << 3, 25)]);
+        let mut motion = Motion::default();
+        assert!(motion.apply(Key::Right.step(rotates)));
+        assert!(shown(&mut console)[0] == picture(&program, &motion));
+        buttons(&mut console, &[(0b1100, 25)]);
+    }
+    // Beside the wireframe the two buttons have no effect, not even later.
+    console.board().inner().set_switches(0);
+    console.command("scene cube").unwrap();
+    buttons(&mut console, &[(0b1100, 25)]);
+    assert_eq!(info::<String>(&mut console, "scene"), "cube");
+    console.command("program").unwrap();
+    console.command("press up").unwrap();
+    let mut motion = Motion::default();
+    assert!(motion.apply(Key::Up.step(false)));
+    assert!(shown(&mut console)[0] == picture(&program, &motion));
+}
+
 #[test]
 fn a_session_with_commands() {
     let mut board = emulator();
     let mut renderer = renderer(&mut board);
-    let text = "eye 0 0 4\nplane 2\nwindow -2 -1.125 2 1.125\nsegment -1 0 1 1 0.5 1\nsegment 0 -1 1 0 1 4\nend\n";
-    let program = wireframe::parse(wireframe::Form::Text, text.into())
-        .unwrap()
-        .bytes;
+    let program = cross();
     let console = renderer.console();
     console.command("quality fast").unwrap();
     let refused = |error: ConsoleError| error.to_string();

@@ -219,6 +219,36 @@ fn a_telephone_shows_picture_and_controls() {
     }
 }
 
+/// With Shift a button stays pressed, so that one mouse presses two buttons together, which start the wireframe again.
+#[test]
+fn shift_keeps_a_button_pressed() {
+    let served = Served::start("page-shift");
+    let mut browser = Browser::start();
+    let page = open(&mut browser, &served.url);
+    browser.evaluate(&page, "document.getElementById('line').focus()");
+    for line in ["scene wireframe", "press up", "press left rotate"] {
+        browser.type_line(&page, line);
+    }
+    let pressed = "[...document.querySelectorAll('[aria-pressed=true]')].map((button) => button.textContent).join()";
+    let key = |name: &str, button: u8, shift: bool| {
+        format!(
+            "document.querySelectorAll('#buttons button')[{button}].dispatchEvent(new KeyboardEvent('{name}', {{ key: ' ', shiftKey: {shift} }}))"
+        )
+    };
+    for (name, button, shift, expected) in [
+        ("keydown", 2, true, "BTN2"),
+        ("keyup", 2, true, "BTN2"),
+        ("blur", 2, false, "BTN2"),
+        ("keydown", 3, false, "BTN2,BTN3"),
+        ("keyup", 3, false, "BTN2"),
+        ("keydown", 2, false, "BTN2"),
+        ("keyup", 2, false, ""),
+    ] {
+        browser.evaluate(&page, &key(name, button, shift));
+        browser.wait(&page, &format!("{pressed} === '{expected}'"));
+    }
+}
+
 /// The page marks a picture at rest as `still`, and the curves of a sensor at rest are flat.
 #[test]
 fn rest_looks_like_rest() {
