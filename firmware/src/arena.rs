@@ -8,10 +8,10 @@ use core::slice;
 use glint_core::allocator::{Allocator, Region};
 use glint_core::object::MAX_OBJECTS;
 
-/// Largest number of uploaded meshes and textures: one mesh for each object, and one replacement texture.
-pub const MAX_UPLOADS: usize = MAX_OBJECTS + 1;
-/// Largest number of uploads: meshes and textures, a program, and a new upload that will replace another upload.
-const UPLOADS: usize = MAX_UPLOADS + 2;
+/// Largest number of uploads: one mesh for each object, one replacement texture, and one wireframe program.
+pub const MAX_UPLOADS: usize = MAX_OBJECTS + 2;
+/// Largest number of regions: the uploads, and a new upload that will replace another upload.
+const UPLOADS: usize = MAX_UPLOADS + 1;
 
 /// Memory that a task fills or sends over several turns. No other reference to the memory exists until the task gives it back.
 pub struct Loan {

@@ -6,12 +6,11 @@ use glint_core::block::Block;
 use glint_core::camera::ViewError;
 use glint_core::console::{LINE_MAX, ParseError};
 use glint_core::deviation::Deviation;
-use glint_core::feature::{DEMO, Feature, GESTURE, IMU, REPLAY, TEXTURE, UPLOAD, WIREFRAME};
+use glint_core::feature::{DEMO, Feature, GESTURE, IMU, REPLAY, UPLOAD, WIREFRAME};
 use glint_core::flash::Kind;
 use glint_core::gesture::ColourError;
 use glint_core::orientation::log::LogError;
 use glint_core::wire::Failure;
-use glint_core::wireframe::ProgramError;
 use glint_engines::gesture::SetUpError;
 use glint_program::drawn::DrawError;
 use glint_program::gateware::Fallback;
@@ -49,7 +48,7 @@ pub enum CommandError<'l> {
         /// Name of the mesh.
         mesh: &'l str,
     },
-    /// The item of this kind and name in the flash, a mesh or a texture, is refused.
+    /// The item of this kind and name in the flash, a mesh, a texture or a program, is refused.
     FlashItem(Kind, &'l str, UploadError),
     /// The gateware lacks these blocks, one bit each, which the scene of this name needs.
     Blocks(&'l str, u32),
@@ -81,8 +80,8 @@ pub enum CommandError<'l> {
     Transfer(Failure),
     /// The upload of a mesh or a texture is refused.
     Upload(UploadError),
-    /// The upload is not a wireframe program.
-    Program(ProgramError<'static>),
+    /// The upload of a wireframe program is refused.
+    Program(UploadError),
     /// A key of the wireframe was pressed while no wireframe is shown.
     NoWireframe,
     /// A key would move the wireframe out of range.
@@ -128,6 +127,7 @@ impl CommandError<'_> {
             Self::Flash(..) => 2,
             Self::Scene(_) => 3,
             Self::NoMesh { .. }
+            | Self::Setting(SettingError::Texture(_) | SettingError::Program(_))
             | Self::FlashItem(..)
             | Self::TooLong { .. }
             | Self::UploadName(..) => 4,
@@ -235,13 +235,13 @@ impl Display for CommandError<'_> {
                 "{name} {bytes}: expected at most {free} bytes, the free memory; `unload NAME` frees the memory of an upload"
             ),
             Self::UploadName(name, error) => {
-                write!(f, "load `{name}`: ")?;
+                write!(f, "upload `{name}`: ")?;
                 match error {
                     NameError::Scene => f.write_str("the name of a scene, expected another name"),
                     NameError::Own => f.write_str("the keyword for a mesh's own textures, expected another name"),
-                    NameError::OtherKind => TEXTURE.when_built(|| write!(
+                    NameError::OtherKind => DEMO.when_built(|| write!(
                         f,
-                        "an upload of the other kind has this name; `unload {name}` removes it"
+                        "an upload of another kind has this name; `unload {name}` removes it"
                     )),
                     NameError::Full => write!(
                         f,

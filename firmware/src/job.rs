@@ -79,7 +79,7 @@ impl Job {
     pub const fn allows_demo(&self) -> bool {
         match self {
             Self::Transfer(transfer) => match transfer.purpose {
-                Purpose::Upload(_) | Purpose::Program | Purpose::Download => true,
+                Purpose::Upload(_) | Purpose::Program(_) | Purpose::Download => true,
                 Purpose::Log => false,
             },
             Self::Draw | Self::Render | Self::Frame { .. } => false,

@@ -37,7 +37,7 @@ pub struct Machine {
     pub animator: Animator,
     /// The last picture, and requests for the next picture.
     pub picture: Picture,
-    /// The meshes and wireframe program, built-in and uploaded, and the staging memory.
+    /// The meshes, textures and wireframe programs, built-in and uploaded, and the staging memory.
     pub models: Models,
     /// The bytes of the flash; `None` if the gateware cannot read the flash.
     pub flash: Option<&'static [u8]>,

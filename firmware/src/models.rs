@@ -1,16 +1,15 @@
 //! Meshes, textures and wireframe programs, built-in and uploaded, and the staging memory for the next upload.
 
-use core::mem::discriminant;
 use core::{fmt, mem, slice};
 
 use glint_core::allocator::Region;
 use glint_core::deviation::Deviation;
-use glint_core::feature::TEXTURE;
+use glint_core::feature::{TEXTURE, WIREFRAME};
 use glint_core::flash::Kind;
 use glint_core::mesh::Mesh;
 use glint_core::shape::Shape;
 use glint_core::texture::{self, Texture};
-use glint_core::wireframe::{Program, ProgramError};
+use glint_core::wireframe::{CUBE_NAME, Program, ProgramError};
 use glint_model::Frame;
 use glint_program::shapes::Shapes;
 use glint_scene::{Assets, CUBE, Name, Scene};
@@ -19,25 +18,29 @@ use heapless::Vec;
 use crate::arena::{Arena, Loan, MAX_UPLOADS};
 use crate::objects::Objects;
 
-/// Default name of an upload, used if the command states none.
+/// Default name of a mesh or a texture, used if the command `load` states none.
 pub const MODEL: &str = "model";
+/// Default name of a wireframe program, used if the command `program` states none.
+pub const PROGRAM: &str = "program";
 
-/// A mesh or a texture, with its name and its memory.
+/// A mesh, a texture or a wireframe program, with its name and its memory.
 struct Upload {
     name: Name,
     content: Content,
     region: Region,
 }
 
-/// The mesh or the texture of an upload.
+/// The mesh, the texture or the wireframe program of an upload.
 #[derive(Clone, Copy)]
 enum Content {
     Mesh(Mesh<'static>),
     Texture(Texture<'static>),
+    Program(Program<'static>),
 }
 
 impl Content {
-    /// The kind of an upload by its first bytes: a texture, or else a mesh.
+    /// The kind of an upload by its first bytes: a texture, or else a mesh. A program has no mark in its first bytes, so the command states
+    /// this kind.
     fn stated_kind(bytes: &[u8]) -> Kind {
         if bytes.starts_with(&texture::MAGIC) {
             Kind::Texture
@@ -46,23 +49,37 @@ impl Content {
         }
     }
 
-    /// Checks an upload as a texture, or as a mesh for any other kind.
+    /// Checks an upload as a texture or a program, or as a mesh for any other kind.
     fn new_checked(
         kind: Kind,
         bytes: &'static [u8],
         most_triangles: u32,
-    ) -> Result<Self, Deviation> {
+    ) -> Result<Self, UploadError> {
         if TEXTURE.is_built && kind == Kind::Texture {
-            return Texture::new_alone(bytes).map(Self::Texture);
+            let texture = Texture::new_alone(bytes);
+            return texture.map(Self::Texture).map_err(UploadError::Content);
         }
-        let mesh = Mesh::new_checked(bytes)?.with_at_most(most_triangles)?;
-        Ok(Self::Mesh(mesh))
+        if WIREFRAME.is_built && kind == Kind::Program {
+            let program = Program::new_checked(bytes);
+            return program.map(Self::Program).map_err(UploadError::Program);
+        }
+        let mesh = Mesh::new_checked(bytes).and_then(|mesh| mesh.with_at_most(most_triangles));
+        mesh.map(Self::Mesh).map_err(UploadError::Content)
+    }
+
+    const fn kind(&self) -> Kind {
+        match self {
+            Self::Mesh(_) => Kind::Mesh,
+            Self::Texture(_) => Kind::Texture,
+            Self::Program(_) => Kind::Program,
+        }
     }
 
     const fn bytes(&self) -> &'static [u8] {
         match self {
             Self::Mesh(mesh) => mesh.bytes(),
             Self::Texture(texture) => texture.bytes(),
+            Self::Program(program) => program.bytes(),
         }
     }
 }
@@ -74,7 +91,7 @@ pub enum NameError {
     Scene,
     /// The name is the keyword for the own textures of meshes.
     Own,
-    /// An upload of the other kind (mesh or texture) has this name.
+    /// An upload of another kind (mesh, texture or program) has this name.
     OtherKind,
     /// There are already [`MAX_UPLOADS`] uploads with other names.
     Full,
@@ -85,7 +102,9 @@ pub enum NameError {
 pub enum UploadError {
     /// The data are not a mesh or a texture, or a mesh of too many triangles.
     Content(Deviation),
-    /// A texture would replace a mesh that the object with this number, from 1, shows.
+    /// The data are not a wireframe program.
+    Program(ProgramError<'static>),
+    /// An upload of another kind would replace a mesh that the object with this number, from 1, shows.
     Object(u32),
 }
 
@@ -93,6 +112,7 @@ impl fmt::Display for UploadError {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::Content(error) => error.fmt(f),
+            Self::Program(error) => WIREFRAME.when_built(|| error.fmt(f)),
             Self::Object(number) => write!(
                 f,
                 "object {number} shows this mesh, expected `object remove {number}` first"
@@ -101,16 +121,14 @@ impl fmt::Display for UploadError {
     }
 }
 
-/// The built-in meshes and program, the uploads in an arena, and the objects with their meshes. An uploaded mesh replaces a built-in mesh
-/// with the same name.
+/// The built-in meshes and program, the uploads in an arena, and the objects with their meshes. An uploaded mesh or program replaces a
+/// built-in one with the same name.
 pub struct Models {
     arena: Arena,
-    /// The uploaded meshes and textures.
+    /// The uploaded meshes, textures and programs.
     uploads: Vec<Upload, MAX_UPLOADS>,
-    /// The uploaded program and its memory.
-    program: Option<(Program<'static>, Region)>,
     shapes: Shapes,
-    /// The built-in program, shown until a program is uploaded.
+    /// The built-in program.
     cube_program: Program<'static>,
     objects: Objects,
     /// The mesh of the scene at the last [`update`](Models::update). The mesh is stored, because every step of drawing a frame needs the
@@ -118,6 +136,8 @@ pub struct Models {
     shown: Mesh<'static>,
     /// The replacement texture of the scene at the last [`update`](Models::update).
     replacement_texture: Option<Texture<'static>>,
+    /// The wireframe program of the scene at the last [`update`](Models::update).
+    program: Program<'static>,
     revision: u32,
     /// Largest number of triangles of an uploaded mesh.
     most_triangles: u32,
@@ -141,7 +161,7 @@ impl Models {
         Ok(Self {
             arena,
             uploads: Vec::new(),
-            program: None,
+            program: cube_program,
             shown: shapes.cube(),
             replacement_texture: None,
             shapes,
@@ -167,22 +187,27 @@ impl Models {
         self.known(&scene.mesh).unwrap_or(self.shapes.cube())
     }
 
-    /// The frame of `scene`, with the mesh, the objects and the texture of the last [`update`](Self::update).
+    /// The frame of `scene`, with the mesh, the objects, the texture and the program of the last [`update`](Self::update).
     pub fn frame<'a>(&'a self, scene: &'a Scene) -> Frame<'a> {
         scene.frame(Assets {
             mesh: Some(self.shown),
             objects: self.objects.all(),
             replacement_texture: self.replacement_texture,
-            program: *self.program(),
+            program: self.program,
         })
     }
 
-    /// Prepares mesh, objects and texture of `scene` for the next frame. Calls `progress` at short intervals.
+    /// Prepares mesh, objects, texture and program of `scene` for the next frame. Calls `progress` at short intervals.
     pub fn update(&mut self, scene: &Scene, progress: &mut dyn FnMut()) {
         let mesh = known(&self.uploads, &self.shapes, &scene.mesh);
         self.shown = mesh.unwrap_or(self.shapes.cube());
         let texture = scene.texture.as_ref().filter(|_| TEXTURE.is_built);
         self.replacement_texture = texture.and_then(|name| of_name(&self.uploads, name)?.texture());
+        if scene.wireframe().is_some() {
+            let name = scene.program.as_deref().unwrap_or(PROGRAM);
+            let program = of_name(&self.uploads, name).and_then(Upload::program);
+            self.program = program.unwrap_or(self.cube_program);
+        }
         if scene.shows_objects() {
             let Self {
                 objects,
@@ -192,16 +217,6 @@ impl Models {
             } = self;
             objects.update(scene, |name| known(uploads, shapes, name), progress);
         }
-    }
-
-    /// The uploaded wireframe program, or else the built-in program.
-    pub fn program(&self) -> &Program<'_> {
-        self.uploaded_program().unwrap_or(&self.cube_program)
-    }
-
-    /// The uploaded program, if any.
-    pub fn uploaded_program(&self) -> Option<&Program<'_>> {
-        self.program.as_ref().map(|(program, _)| program)
     }
 
     /// The uploaded meshes with their names.
@@ -216,12 +231,24 @@ impl Models {
         uploads.filter_map(|upload| Some((upload.name.as_str(), upload.texture()?)))
     }
 
+    /// The uploaded wireframe programs with their names.
+    pub fn programs(&self) -> impl Iterator<Item = (&str, Program<'_>)> + Clone {
+        let uploads = self.uploads.iter().filter(|_| WIREFRAME.is_built);
+        uploads.filter_map(|upload| Some((upload.name.as_str(), upload.program()?)))
+    }
+
+    /// The names of all uploads with their kinds.
+    pub fn names(&self) -> impl Iterator<Item = (&Name, Kind)> {
+        let uploads = self.uploads.iter();
+        uploads.map(|upload| (&upload.name, upload.content.kind()))
+    }
+
     /// Names of the built-in meshes that no upload replaces.
     pub fn built_in(&self) -> impl Iterator<Item = &'static str> {
         Shapes::names().filter(move |built_in| self.meshes().all(|(name, _)| name != *built_in))
     }
 
-    /// Number of uploaded meshes and textures.
+    /// Number of uploads.
     pub fn upload_count(&self) -> usize {
         self.uploads.len()
     }
@@ -236,14 +263,24 @@ impl Models {
         self.shapes.shape(shape)
     }
 
+    /// Whether an upload of this kind has this name.
+    pub fn has_upload(&self, kind: Kind, name: &str) -> bool {
+        of_name(&self.uploads, name).is_some_and(|upload| upload.content.kind() == kind)
+    }
+
     /// Whether an uploaded mesh has this name.
     pub fn has_mesh(&self, name: &str) -> bool {
-        self.meshes().any(|(mesh, _)| mesh == name)
+        self.has_upload(Kind::Mesh, name)
     }
 
     /// Whether an uploaded texture has this name.
     pub fn has_texture(&self, name: &str) -> bool {
-        self.textures().any(|(texture, _)| texture == name)
+        TEXTURE.is_built && self.has_upload(Kind::Texture, name)
+    }
+
+    /// Whether an uploaded wireframe program or the built-in one has this name.
+    pub fn has_program(&self, name: &str) -> bool {
+        name == CUBE_NAME || self.has_upload(Kind::Program, name)
     }
 
     /// Whether an uploaded or a built-in mesh has this name.
@@ -278,13 +315,13 @@ impl Models {
         Ok(())
     }
 
-    /// Checks that a mesh or a texture of the flash can become an upload with this name. Unlike an upload by the host, the copy must not
+    /// Checks that a mesh, a texture or a program of the flash can become an upload with this name. Unlike an upload by the host, the copy must not
     /// replace another upload, because the demo also makes such copies.
     ///
     /// # Errors
     /// [`NameError::OtherKind`] or [`NameError::Full`].
     pub fn check_copy(&self, name: &str) -> Result<(), NameError> {
-        if TEXTURE.is_built && of_name(&self.uploads, name).is_some() {
+        if of_name(&self.uploads, name).is_some() {
             return Err(NameError::OtherKind);
         }
         self.check_capacity(name)
@@ -311,7 +348,7 @@ impl Models {
     }
 
     /// Checks lent memory as an upload of this kind, or for `None` of the kind that the first bytes indicate, and stores the upload under
-    /// `name`. The upload replaces an earlier upload with this name; `scene` then no longer shows an earlier upload of the other kind. No
+    /// `name`. The upload replaces an earlier upload with this name; `scene` then no longer shows an earlier upload of another kind. No
     /// frame may be in progress.
     ///
     /// # Errors
@@ -328,9 +365,9 @@ impl Models {
         let bytes = self.lasting(region, length);
         let kind = kind.unwrap_or_else(|| Content::stated_kind(bytes));
         let content = Content::new_checked(kind, bytes, self.most_triangles);
-        let content = content.map_err(UploadError::Content).and_then(|content| {
-            let is_texture = matches!(content, Content::Texture(_));
-            match self.object_of(name, scene).filter(|_| is_texture) {
+        let content = content.and_then(|content| {
+            let is_mesh = content.kind() == Kind::Mesh;
+            match self.object_of(name, scene).filter(|_| !is_mesh) {
                 Some(number) => Err(UploadError::Object(number)),
                 None => Ok(content),
             }
@@ -351,7 +388,7 @@ impl Models {
         match self.uploads.iter_mut().find(|old| old.name == name) {
             Some(old) => {
                 let unused = mem::replace(old, new);
-                if TEXTURE.is_built && discriminant(&unused.content) != discriminant(&content) {
+                if unused.content.kind() != content.kind() {
                     unused.leave(scene);
                 }
                 self.arena.release(unused.region);
@@ -363,34 +400,13 @@ impl Models {
     }
 
     /// Records a change of the uploads. Drops every reference to an upload outside of the list of uploads: empties the list of objects, and
-    /// shows the cube with its own textures.
+    /// shows the cube with its own textures, or the built-in program.
     fn revise(&mut self) {
         self.revision = self.revision.wrapping_add(1);
         self.objects.truncate(0);
         self.shown = self.shapes.cube();
         self.replacement_texture = None;
-    }
-
-    /// Checks lent memory as a wireframe program, and stores the program in place of the previous one. No frame may be in progress.
-    ///
-    /// # Errors
-    /// [`ProgramError`] for an invalid program; nothing changes then, and the memory is given back.
-    pub fn accept_program(&mut self, loan: Loan) -> Result<(), ProgramError<'static>> {
-        let length = loan.as_ref().len();
-        let region = self.arena.keep_lent(loan);
-        match Program::new_checked(self.lasting(region, length)) {
-            Ok(program) => {
-                self.revise();
-                if let Some((_, old)) = self.program.replace((program, region)) {
-                    self.arena.release(old);
-                }
-                Ok(())
-            }
-            Err(error) => {
-                self.arena.release(region);
-                Err(error)
-            }
-        }
+        self.program = self.cube_program;
     }
 
     /// Removes an upload, which `scene` then no longer shows, and closes the gap by moving other uploads. No frame may be in progress.
@@ -412,28 +428,23 @@ impl Models {
         self.revise();
         let cube = Content::Mesh(self.shapes.cube());
         // No references into the arena may exist while the arena moves its regions.
-        let lengths: Vec<usize, MAX_UPLOADS> = self
+        let contents: Vec<(Kind, usize), MAX_UPLOADS> = self
             .uploads
             .iter_mut()
-            .map(|upload| mem::replace(&mut upload.content, cube).bytes().len())
+            .map(|upload| mem::replace(&mut upload.content, cube))
+            .map(|content| (content.kind(), content.bytes().len()))
             .collect();
-        let program = self.program.take();
-        let program = program.map(|(program, region)| (program.bytes().len(), region));
 
         self.arena.compact();
-        for (index, length) in lengths.iter().enumerate() {
+        for (index, (kind, length)) in contents.iter().enumerate() {
             let region = self.uploads.get(index).map(|upload| upload.region);
             let content = region.map(|region| {
                 let bytes = self.lasting(region, *length);
-                Content::new_checked(Content::stated_kind(bytes), bytes, self.most_triangles)
+                Content::new_checked(*kind, bytes, self.most_triangles)
             });
             if let (Some(upload), Some(Ok(content))) = (self.uploads.get_mut(index), content) {
                 upload.content = content;
             }
-        }
-        if let Some((length, region)) = program {
-            let program = Program::new_checked(self.lasting(region, length));
-            self.program = program.ok().map(|program| (program, region));
         }
     }
 
@@ -441,7 +452,7 @@ impl Models {
     fn lasting(&self, region: Region, length: usize) -> &'static [u8] {
         let bytes = self.arena.bytes(region, length);
         // SAFETY: the memory is 'static. All borrowers of these bytes are dropped, or are in the private fields `uploads`, `program`,
-        // `objects`, `shown` and `replacement_texture`. `accept`, `accept_program` and `remove` take a borrower out of these fields before they release its
+        // `objects`, `shown` and `replacement_texture`. `accept` and `remove` take a borrower out of these fields before they release its
         // region, and `compact` before it moves the regions; the arena lends only gaps mutably.
         unsafe { slice::from_raw_parts(bytes.as_ptr(), bytes.len()) }
     }
@@ -451,24 +462,34 @@ impl Upload {
     const fn mesh(&self) -> Option<Mesh<'static>> {
         match self.content {
             Content::Mesh(mesh) => Some(mesh),
-            Content::Texture(_) => None,
+            Content::Texture(_) | Content::Program(_) => None,
         }
     }
 
     const fn texture(&self) -> Option<Texture<'static>> {
         match self.content {
             Content::Texture(texture) => Some(texture),
-            Content::Mesh(_) => None,
+            Content::Mesh(_) | Content::Program(_) => None,
         }
     }
 
-    /// Shows the cube, or the own textures of meshes, if `scene` shows this upload.
+    const fn program(&self) -> Option<Program<'static>> {
+        match self.content {
+            Content::Program(program) => Some(program),
+            Content::Mesh(_) | Content::Texture(_) => None,
+        }
+    }
+
+    /// Shows the cube, the own textures of meshes, or the program that was uploaded without a name, if `scene` shows this upload.
     fn leave(&self, scene: &mut Scene) {
         match self.content {
             Content::Mesh(_) if scene.mesh == self.name => scene.set_mesh(CUBE),
             Content::Mesh(_) => {}
             Content::Texture(_) => {
                 scene.texture.take_if(|texture| *texture == self.name);
+            }
+            Content::Program(_) => {
+                scene.program.take_if(|program| *program == self.name);
             }
         }
     }

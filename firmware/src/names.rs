@@ -1,7 +1,8 @@
-//! The names of scenes, meshes and textures, for the completion on the console.
+//! The names of scenes, meshes, textures and wireframe programs, for the completion on the console.
 
 use glint_core::console::{NameList, Names};
 use glint_core::flash::Kind;
+use glint_core::wireframe::CUBE_NAME;
 use glint_program::shapes::Shapes;
 use glint_scene::Name;
 use heapless::Vec;
@@ -15,7 +16,7 @@ use crate::scenes::{DEFAULT, Library, SCENES, SceneItem};
 #[derive(Default)]
 pub struct MachineNames {
     library: Library,
-    /// The uploaded meshes and textures.
+    /// The uploads with their kinds.
     uploads: Vec<(Name, Kind), MAX_UPLOADS>,
     /// [`Models::revision`] of the copies.
     revision: u32,
@@ -35,11 +36,8 @@ impl MachineNames {
     pub fn update(&mut self, models: &Models) {
         if self.revision != models.revision() {
             self.revision = models.revision();
-            let meshes = models.meshes().map(|(name, _)| (name, Kind::Mesh));
-            let textures = models.textures().map(|(name, _)| (name, Kind::Texture));
-            let names = meshes.chain(textures);
-            let copies = names.filter_map(|(name, kind)| Some((Name::try_from(name).ok()?, kind)));
-            self.uploads = copies.collect();
+            let names = models.names();
+            self.uploads = names.map(|(name, kind)| (name.clone(), kind)).collect();
         }
     }
 
@@ -55,6 +53,9 @@ impl Names for MachineNames {
         if matches!(list, NameList::Scenes | NameList::Meshes) {
             let built_in = Shapes::names().filter(|name| !self.is_uploaded(Kind::Mesh, name));
             built_in.for_each(&mut *visit);
+        }
+        if list == NameList::Programs && !self.is_uploaded(Kind::Program, CUBE_NAME) {
+            visit(CUBE_NAME);
         }
         for (name, kind) in &self.uploads {
             if list == NameList::Uploads || is_listed(list, *kind) {
@@ -79,9 +80,10 @@ impl Names for MachineNames {
 /// Whether a list of names includes the items of this kind in the flash.
 fn is_listed(list: NameList, kind: Kind) -> bool {
     match list {
-        NameList::Scenes => kind != Kind::Texture,
+        NameList::Scenes => !matches!(kind, Kind::Texture | Kind::Program),
         NameList::Meshes => kind == Kind::Mesh,
         NameList::Textures => kind == Kind::Texture,
+        NameList::Programs => kind == Kind::Program,
         NameList::Uploads => false,
     }
 }

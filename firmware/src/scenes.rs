@@ -85,7 +85,7 @@ impl Library {
         self.error
     }
 
-    /// All items of the flash: scenes, lists, meshes and textures.
+    /// All items of the flash: scenes, lists, meshes, textures and wireframe programs.
     pub fn items(&self) -> impl Iterator<Item = Item<'static>> + use<> {
         self.contents
             .into_iter()
@@ -100,7 +100,7 @@ impl Library {
         found.next().map(SceneItem::Flash).or_else(built_in)
     }
 
-    /// The mesh or texture of the flash with this name.
+    /// The mesh, texture or wireframe program of the flash with this name.
     pub fn item(&self, kind: Kind, name: &str) -> Option<Item<'static>> {
         self.contents?.find(kind, name)
     }

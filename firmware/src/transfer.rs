@@ -29,8 +29,8 @@ const TIMING: Timing = Timing::CONSOLE;
 pub enum Purpose {
     /// An upload of a mesh or a texture under this name.
     Upload(Name),
-    /// An upload of a wireframe program.
-    Program,
+    /// An upload of a wireframe program under this name.
+    Program(Name),
     /// An upload of a log of sensor samples.
     Log,
     /// A download of any data.

@@ -53,11 +53,19 @@ pub enum Kind {
     List = 3,
     /// A texture, in the format of an upload.
     Texture = 4,
+    /// A wireframe program, in the format of an upload.
+    Program = 5,
 }
 
 impl Kind {
     /// All kinds, in the order of their numbers.
-    pub const ALL: [Self; 4] = [Self::Mesh, Self::Scene, Self::List, Self::Texture];
+    pub const ALL: [Self; 5] = [
+        Self::Mesh,
+        Self::Scene,
+        Self::List,
+        Self::Texture,
+        Self::Program,
+    ];
 
     /// Name for messages.
     pub const fn name(self) -> &'static str {
@@ -66,6 +74,7 @@ impl Kind {
             Self::Scene => "scene",
             Self::List => "list",
             Self::Texture => "texture",
+            Self::Program => "program",
         }
     }
 }
@@ -127,7 +136,7 @@ impl<'a> Item<'a> {
     }
 }
 
-/// The contents of a flash: meshes, textures, scenes and lists of scenes.
+/// The contents of a flash: meshes, textures, wireframe programs, scenes and lists of scenes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Contents<'a> {
     /// All bytes, beginning with the list of the items.
@@ -219,8 +228,9 @@ impl<'a> Contents<'a> {
                 kind, length, name, ..
             } = FlashEntry::from_bytes(entry);
             if kind_of(kind).is_none() {
-                let expected =
-                    Content("a kind of items: 1 (mesh), 2 (scene), 3 (list) or 4 (texture)");
+                let expected = Content(
+                    "a kind of items: 1 (mesh), 2 (scene), 3 (list), 4 (texture) or 5 (program)",
+                );
                 return Err(error(place(FlashEntry::KIND), expected, kind));
             }
             let rest = clamped(self.bytes.len().saturating_sub(offset));
@@ -255,7 +265,7 @@ pub struct Image<'a> {
 }
 
 impl<'a> Image<'a> {
-    /// Checks an image with all of its checksums, but not the meshes and the commands of scenes.
+    /// Checks an image with all of its checksums, but not the meshes, the programs and the commands of scenes.
     ///
     /// # Errors
     /// The first deviation from the format.
@@ -269,7 +279,7 @@ impl<'a> Image<'a> {
         let contents = Contents::new_checked(bytes.get(CONTENTS..).unwrap_or_default())?;
         for item in contents.items() {
             match item.kind {
-                Kind::Mesh | Kind::Texture => drop(item.checked()?),
+                Kind::Mesh | Kind::Texture | Kind::Program => drop(item.checked()?),
                 Kind::Scene | Kind::List => drop(item.text()?),
             }
         }

@@ -18,10 +18,12 @@ mod program;
 mod projection;
 pub mod text;
 
-pub use cube::CUBE;
+pub use cube::{CUBE, CUBE_NAME};
 pub use edges::unique_edges;
 pub use error::{Expected, Found, Location, ProgramError, Violation};
-pub use format::{MAX_SEGMENTS, Opcode, Point, Segment, WORD_BYTES, Window};
+pub use format::{
+    EXTENSIONS, MAX_SEGMENTS, Opcode, Point, Segment, WORD_BYTES, Window, is_program_file,
+};
 pub use instruction::Instruction;
 pub use keys::{DEBOUNCE_MS, Debouncer, Key, Requests};
 pub use motion::{Motion, PAN, Pose, ROTATION_COSINE, ROTATION_SINE, Step};

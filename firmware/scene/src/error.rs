@@ -3,12 +3,13 @@
 use core::fmt::{self, Display};
 
 use glint_core::camera::ViewError;
-use glint_core::feature::{ANTIALIASING, MESH, OBJECT, SKY, TEXTURE};
+use glint_core::feature::{ANTIALIASING, MESH, OBJECT, SKY, TEXTURE, WIREFRAME};
 use glint_core::framing::FramingError;
 use glint_core::light::MAX_LIGHTS;
 use glint_core::matrix::MatrixError;
 use glint_core::object::MAX_OBJECTS;
 use glint_core::picture::Size;
+use glint_core::wireframe::CUBE_NAME;
 
 /// Reason why an option is rejected. The error text names the option and the expected value.
 #[derive(Clone, Copy, Debug)]
@@ -37,6 +38,8 @@ pub enum SettingError<'l> {
     ObjectMesh(&'l str),
     /// No uploaded texture has this name.
     Texture(&'l str),
+    /// No wireframe program has this name.
+    Program(&'l str),
     /// The list of objects cannot be changed.
     Object(ObjectError),
 }
@@ -99,6 +102,12 @@ impl Display for SettingError<'_> {
                 write!(
                     f,
                     "texture `{name}`: expected own or an uploaded texture, `models` lists them"
+                )
+            }),
+            Self::Program(name) => WIREFRAME.when_built(|| {
+                write!(
+                    f,
+                    "program `{name}`: expected {CUBE_NAME} or an uploaded program, `models` lists them"
                 )
             }),
             Self::Object(error) => OBJECT.when_built(|| error.fmt(f)),

@@ -49,8 +49,8 @@ pub enum Line<'l> {
     Option(Setting<'l>),
     /// Shows a mesh, even if a scene has the same name.
     Mesh(&'l str),
-    /// Shows the wireframe.
-    Wireframe,
+    /// Shows the wireframe: the program with this name, or for `None` the program of the scene.
+    Wireframe(Option<&'l str>),
     /// Sets or starts the motion of the camera or the wireframe.
     Motion(Command<'l>),
 }
@@ -66,7 +66,7 @@ impl<'l> Line<'l> {
         match command.effect() {
             Effect::Option(setting) => Ok(Self::Option(*setting)),
             Effect::Subject(mesh) => Ok(Self::Mesh(mesh)),
-            Effect::Wireframe => Ok(Self::Wireframe),
+            Effect::Wireframe(program) => Ok(Self::Wireframe(program)),
             Effect::Motion => Ok(Self::Motion(command)),
             Effect::None | Effect::Uploads => Err(Reason::Effect),
         }
@@ -79,7 +79,7 @@ impl<'l> Line<'l> {
             | Self::Option(Setting::Object {
                 action: ObjectAction::Add { mesh, .. },
             }) => Some(mesh),
-            Self::Option(_) | Self::Wireframe | Self::Motion(_) => None,
+            Self::Option(_) | Self::Wireframe(_) | Self::Motion(_) => None,
         }
     }
 
@@ -87,7 +87,15 @@ impl<'l> Line<'l> {
     pub const fn texture(&self) -> Option<&'l str> {
         match self {
             Self::Option(Setting::Texture { texture }) => *texture,
-            Self::Option(_) | Self::Mesh(_) | Self::Wireframe | Self::Motion(_) => None,
+            Self::Option(_) | Self::Mesh(_) | Self::Wireframe(_) | Self::Motion(_) => None,
+        }
+    }
+
+    /// Name of the wireframe program that the line shows.
+    pub const fn program(&self) -> Option<&'l str> {
+        match self {
+            Self::Wireframe(program) => *program,
+            Self::Option(_) | Self::Mesh(_) | Self::Motion(_) => None,
         }
     }
 
@@ -96,7 +104,7 @@ impl<'l> Line<'l> {
         match self {
             Self::Option(setting) => setting.name().feature(),
             Self::Mesh(_) => BASE,
-            Self::Wireframe => WIREFRAME,
+            Self::Wireframe(_) => WIREFRAME,
             Self::Motion(command) => command.feature(),
         }
     }
@@ -104,12 +112,12 @@ impl<'l> Line<'l> {
     /// Applies the line to `scene`, unless it is a motion.
     ///
     /// # Errors
-    /// The errors of [`Scene::apply`].
+    /// The errors of [`Scene::apply`] and [`Scene::show_program`].
     pub fn apply(&self, scene: &mut Scene, board: &mut dyn Board) -> Result<(), SettingError<'l>> {
         match self {
             Self::Option(setting) => scene.apply(setting, board)?,
             Self::Mesh(mesh) => scene.show_mesh(mesh),
-            Self::Wireframe => scene.show_wireframe(),
+            Self::Wireframe(program) => scene.show_program(*program, board)?,
             Self::Motion(_) => {}
         }
         Ok(())

@@ -33,10 +33,10 @@ use crate::error::{ObjectError, SettingError};
 /// Name of the mesh that the start scene shows.
 pub const CUBE: &str = "cube";
 
-/// The name of a mesh or a texture.
+/// The name of a mesh, a texture or a wireframe program.
 pub type Name = String<MAX_NAME>;
 
-/// Capabilities, meshes and textures of the board that draws a scene.
+/// Capabilities, meshes, textures and wireframe programs of the board that draws a scene.
 pub trait Board {
     /// Whether the board supports pictures of this size.
     fn has_size(&self, size: Size) -> bool;
@@ -52,9 +52,12 @@ pub trait Board {
 
     /// Whether a texture with this name exists.
     fn has_texture(&self, name: &str) -> bool;
+
+    /// Whether a wireframe program with this name exists.
+    fn has_program(&self, name: &str) -> bool;
 }
 
-/// A board without limits. Its meshes and textures are loaded only when the scene is drawn.
+/// A board without limits. Its meshes, textures and programs are loaded only when the scene is drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct AnyBoard;
 
@@ -76,6 +79,10 @@ impl Board for AnyBoard {
     }
 
     fn has_texture(&self, _: &str) -> bool {
+        true
+    }
+
+    fn has_program(&self, _: &str) -> bool {
         true
     }
 }
@@ -294,6 +301,9 @@ pub struct Scene {
     pub options: MeshOptions,
     /// Name of the replacement texture; `None` if the meshes show their own textures.
     pub texture: Option<Name>,
+    /// Name of the wireframe program, even if the scene shows another subject; `None` for the program that was uploaded without a name, or
+    /// else the built-in program.
+    pub program: Option<Name>,
     /// Backend that draws the picture.
     pub backend: Backend,
     /// The options of the board's start scene.
@@ -329,6 +339,7 @@ impl Scene {
             fixed_samples: None,
             options: MeshOptions::default(),
             texture: None,
+            program: None,
             backend: defaults.backend,
             defaults,
             dither: true,
@@ -557,6 +568,25 @@ impl Scene {
     fn show_objects(&mut self) {
         self.kind = Kind::Objects;
         self.edges = None;
+    }
+
+    /// Shows the wireframe program with this name, or for `None` the scene's program, without motion.
+    ///
+    /// # Errors
+    /// The board has no program of this name; the scene is then unchanged.
+    pub fn show_program<'l>(
+        &mut self,
+        program: Option<&'l str>,
+        board: &dyn Board,
+    ) -> Result<(), SettingError<'l>> {
+        if let Some(program) = program {
+            if !board.has_program(program) {
+                return Err(SettingError::Program(program));
+            }
+            self.program = Some(name(program));
+        }
+        self.show_wireframe();
+        Ok(())
     }
 
     /// Shows the wireframe without motion, and turns edges of a mesh and stereo off.

@@ -74,6 +74,13 @@ impl Scene {
     /// # Errors
     /// The errors of `out`.
     pub fn write_lines(&self, from: &Self, out: &mut dyn Write) -> fmt::Result {
+        let is_wireframe = matches!(self.kind, Kind::Wireframe(_));
+        let program = self.program.as_ref();
+        let program = program.filter(|program| from.program.as_ref() != Some(program));
+        if let Some(program) = program.filter(|_| !is_wireframe) {
+            // The command also shows the program, which excludes stereo, so it comes before the options, and a mesh is shown again.
+            writeln!(out, "program {program}\nscene {}", self.mesh)?;
+        }
         for &option in OptionName::ALL {
             if !matches!(option, OptionName::Field | OptionName::Edges) {
                 self.write_option(option, Some(from), out)?;
@@ -90,7 +97,10 @@ impl Scene {
         match self.kind {
             Kind::Solid => Ok(()),
             Kind::Objects => writeln!(out, "object show"),
-            Kind::Wireframe(_) => writeln!(out, "program"),
+            Kind::Wireframe(_) => match program {
+                Some(program) => writeln!(out, "program {program}"),
+                None => writeln!(out, "program"),
+            },
         }
     }
 

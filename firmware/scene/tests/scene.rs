@@ -10,7 +10,7 @@ use glint_core::words::Words;
 use glint_scene::{AnyBoard, Board, Defaults, Kind, Reason, Scene};
 use proptest::prelude::*;
 
-/// A board that supports pictures up to 640×360, and has no engine, and no mesh and no texture named `none`.
+/// A board that supports pictures up to 640×360, and has no engine, and no mesh, texture or program named `none`.
 struct SmallBoard;
 
 impl Board for SmallBoard {
@@ -31,6 +31,10 @@ impl Board for SmallBoard {
     }
 
     fn has_texture(&self, name: &str) -> bool {
+        name != "none"
+    }
+
+    fn has_program(&self, name: &str) -> bool {
         name != "none"
     }
 }
@@ -80,6 +84,7 @@ fn line() -> impl Strategy<Value = String> {
         word(&["cube", "torus", "a"]).prop_map(|mesh| format!("scene {mesh}")),
         word(&[
             "program",
+            "program a.wfb",
             "object show",
             "object remove all",
             "object remove 1"
@@ -248,6 +253,10 @@ fn a_board_limits_the_scene() {
         (
             "texture none",
             "texture `none`: expected own or an uploaded texture",
+        ),
+        (
+            "program none",
+            "program `none`: expected cube or an uploaded program",
         ),
         ("object show", "object: no objects"),
         ("object move 2 1,1,1", "object 2: no objects"),

@@ -44,6 +44,10 @@ impl Board for ThisBoard<'_> {
     fn has_texture(&self, name: &str) -> bool {
         self.models.has_texture(name)
     }
+
+    fn has_program(&self, name: &str) -> bool {
+        self.models.has_program(name)
+    }
 }
 
 impl<'l> Executor<'l> for Machine {

@@ -1,7 +1,7 @@
 //! Commands that upload meshes, textures and wireframe programs, or select what the scene shows: a mesh, a field, both, or a wireframe.
 
 use glint_core::block::Block;
-use glint_core::console::{Command, OWN, OrbitCommands, SceneCommands, Setting};
+use glint_core::console::{Command, OWN, OrbitCommands, ProgramAction, SceneCommands, Setting};
 use glint_core::feature::{GESTURE, MESH};
 use glint_core::flash::Kind;
 use glint_core::picture::Backend;
@@ -14,7 +14,7 @@ use crate::arena::MAX_UPLOADS;
 use crate::error::CommandError;
 use crate::job::{CommandResult, Job, Orbit, Reply};
 use crate::machine::Machine;
-use crate::models::{MODEL, NameError};
+use crate::models::{MODEL, NameError, PROGRAM};
 use crate::scenes::{BuiltIn, Content, DEFAULT, SCENES, SceneItem};
 use crate::transfer::Purpose;
 
@@ -30,18 +30,8 @@ impl<'l> SceneCommands<'l> for Machine {
     }
 
     fn load(&mut self, upload: Manifest, name: Option<&'l str>) -> CommandResult<'l> {
-        let name = name.unwrap_or(MODEL);
-        let accepted = if name == DEFAULT || self.library.find(name).is_some() {
-            Err(NameError::Scene)
-        } else if name == OWN {
-            Err(NameError::Own)
-        } else {
-            self.models.check_capacity(name)
-        };
-        accepted.map_err(|error| CommandError::UploadName(name, error))?;
-        // The parser limits names to the string's capacity, so the conversion does not fail.
-        let purpose = Purpose::Upload(Name::try_from(name).unwrap_or_default());
-        upload::begin(self, "load", purpose, upload)
+        let name = upload_name(self, name.unwrap_or(MODEL))?;
+        upload::begin(self, "load", Purpose::Upload(name), upload)
     }
 
     fn models(&mut self) -> CommandResult<'l> {
@@ -60,6 +50,7 @@ impl<'l> SceneCommands<'l> for Machine {
             let kind = match item.kind {
                 Kind::Mesh => "",
                 Kind::Texture => "texture ",
+                Kind::Program => "program ",
                 Kind::Scene | Kind::List => continue,
             };
             let (name, bytes) = (item.name, item.length());
@@ -82,9 +73,11 @@ impl<'l> SceneCommands<'l> for Machine {
                 "texture {name} size {width} {height} bytes {bytes}\n"
             ));
         }
-        if let Some(program) = models.uploaded_program() {
+        for (name, program) in models.programs() {
             let (segments, bytes) = (program.segment_count(), program.bytes().len());
-            terminal.print(format_args!("program segments {segments} bytes {bytes}\n"));
+            terminal.print(format_args!(
+                "program {name} segments {segments} bytes {bytes}\n"
+            ));
         }
         let (count, free) = (models.upload_count(), models.free());
         terminal.print(format_args!(
@@ -104,12 +97,26 @@ impl<'l> SceneCommands<'l> for Machine {
         Ok(Reply::Done)
     }
 
-    fn program(&mut self, upload: Option<Manifest>) -> CommandResult<'l> {
-        let Some(upload) = upload else {
-            self.scene.show_wireframe();
-            return Ok(Reply::Done);
+    fn program(&mut self, action: Option<ProgramAction<'l>>) -> CommandResult<'l> {
+        let name = match action {
+            Some(ProgramAction::Upload { manifest, name }) => {
+                let name = upload_name(self, name.unwrap_or(PROGRAM))?;
+                return upload::begin(self, "program", Purpose::Program(name), manifest);
+            }
+            Some(ProgramAction::Show(name)) => Some(name),
+            None => None,
         };
-        upload::begin(self, "program", Purpose::Program, upload)
+        if let Some(name) = name {
+            upload::from_flash(self, Kind::Program, name)?;
+        }
+        let Self {
+            scene,
+            renderer,
+            models,
+            ..
+        } = self;
+        scene.show_program(name, &options::board(renderer, models))?;
+        Ok(Reply::Done)
     }
 
     fn press(&mut self, key: Key, rotate: bool) -> CommandResult<'l> {
@@ -121,6 +128,23 @@ impl<'l> SceneCommands<'l> for Machine {
         }
         Ok(Reply::After(Job::Draw))
     }
+}
+
+/// Checks that something can be uploaded under a name.
+///
+/// # Errors
+/// A scene has this name, the name is a keyword, or the list of uploads is full.
+fn upload_name<'l>(machine: &Machine, name: &'l str) -> Result<Name, CommandError<'l>> {
+    let accepted = if name == DEFAULT || machine.library.find(name).is_some() {
+        Err(NameError::Scene)
+    } else if name == OWN {
+        Err(NameError::Own)
+    } else {
+        machine.models.check_capacity(name)
+    };
+    accepted.map_err(|error| CommandError::UploadName(name, error))?;
+    // The parser limits names to the string's capacity, so the conversion does not fail.
+    Ok(Name::try_from(name).unwrap_or_default())
 }
 
 impl<'l> OrbitCommands<'l> for Machine {
@@ -152,7 +176,7 @@ fn list(machine: &mut Machine) {
         let is_listed = match item.kind {
             Kind::Mesh => !models.has_mesh(item.name),
             Kind::Scene | Kind::List => true,
-            Kind::Texture => false,
+            Kind::Texture | Kind::Program => false,
         };
         if is_listed {
             terminal.print(format_args!("scene {} flash\n", item.name));
@@ -236,6 +260,9 @@ fn show_lines<'l>(machine: &mut Machine, name: &'l str, text: &'static str) -> C
         }
         if let Some(texture) = line.texture() {
             upload::from_flash(machine, Kind::Texture, texture)?;
+        }
+        if let Some(program) = line.program() {
+            upload::from_flash(machine, Kind::Program, program)?;
         }
         is_stated |= matches!(line, Line::Option(Setting::Backend { .. }));
         line.apply(

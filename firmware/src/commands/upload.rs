@@ -1,6 +1,6 @@
-//! Data in the staging memory: uploads from the host, and meshes and textures of the flash.
+//! Data in the staging memory: uploads from the host, and meshes, textures and wireframe programs of the flash.
 
-use glint_core::feature::{DEMO, MESH};
+use glint_core::feature::{DEMO, MESH, WIREFRAME};
 use glint_core::flash::Kind;
 use glint_core::wire::Manifest;
 use glint_program::sensor;
@@ -11,6 +11,7 @@ use crate::arena::Loan;
 use crate::error::CommandError;
 use crate::job::{CommandResult, Job, Reply};
 use crate::machine::Machine;
+use crate::models::PROGRAM;
 use crate::transfer::{Purpose, Transfer};
 
 /// Begins to receive the data that `manifest` announces into the staging memory. The reply has the line `ready`, or `present` if the memory
@@ -62,14 +63,24 @@ pub fn finish(machine: &mut Machine, transfer: &mut Transfer) -> CommandResult<'
             }
             Reply::Done
         }
-        Purpose::Program => {
-            let accepted = machine.models.accept_program(memory);
+        Purpose::Program(name) => {
+            let Machine {
+                models,
+                scene,
+                terminal,
+                ..
+            } = machine;
+            let accepted = models.accept(name, Some(Kind::Program), memory, scene);
             accepted.map_err(CommandError::Program)?;
-            machine.scene.show_wireframe();
-            let ignored = machine.models.program().ignored();
+            scene.program = Some(name.clone()).filter(|name| name != PROGRAM);
+            scene.show_wireframe();
+            let mut programs = models.programs();
+            let ignored = programs.find(|(known, _)| known == name);
+            let ignored = ignored.map_or(0, |(_, program)| program.ignored());
             if ignored > 0 {
-                let text = format_args!("note: {ignored} bytes after the end are ignored\n");
-                machine.terminal.print(text);
+                terminal.print(format_args!(
+                    "note: {ignored} bytes after the end are ignored\n"
+                ));
             }
             Reply::Done
         }
@@ -79,24 +90,24 @@ pub fn finish(machine: &mut Machine, transfer: &mut Transfer) -> CommandResult<'
     Ok(reply)
 }
 
-/// Copies the mesh or texture with this name from the flash to the uploads, unless an upload has this name. Returns whether the mesh or
-/// texture exists.
+/// Copies the mesh, texture or wireframe program with this name from the flash to the uploads, unless an upload has this name. Returns
+/// whether the item exists.
 ///
 /// # Errors
-/// The item is damaged, an upload of the other kind has its name, or the free memory is too small.
+/// The item is damaged, an upload of another kind has its name, or the free memory is too small.
 pub fn from_flash<'l>(
     machine: &mut Machine,
     kind: Kind,
     name: &'l str,
 ) -> Result<bool, CommandError<'l>> {
-    if !MESH.is_built || !DEMO.is_built {
+    let is_built = match kind {
+        Kind::Program => WIREFRAME.is_built,
+        Kind::Mesh | Kind::Texture | Kind::Scene | Kind::List => MESH.is_built,
+    };
+    if !is_built || !DEMO.is_built {
         return Ok(false);
     }
-    let is_there = match kind {
-        Kind::Texture => machine.models.has_texture(name),
-        Kind::Mesh | Kind::Scene | Kind::List => machine.models.has_mesh(name),
-    };
-    if is_there {
+    if machine.models.has_upload(kind, name) {
         return Ok(true);
     }
     let Some(item) = machine.library.item(kind, name) else {

@@ -81,7 +81,33 @@ pub fn upload<B: Board + ?Sized>(
             return Err(TransferError::Triangles { found, most });
         }
     }
-    let mut command = command_for("load", bytes);
+    upload_by(console, "load", bytes, name, session, progress)
+}
+
+/// Uploads a wireframe program in binary form under a name, by default `program`, and draws it. Returns the notes of the board.
+///
+/// # Errors
+/// The transfer fails or the firmware refuses the program; the board then still shows its last frame.
+pub fn upload_program<B: Board + ?Sized>(
+    console: &mut Console<B>,
+    bytes: &[u8],
+    name: Option<&str>,
+    session: u8,
+    progress: &mut Progress,
+) -> Result<Vec<String>, TransferError> {
+    upload_by(console, "program", bytes, name, session, progress)
+}
+
+/// Uploads data by the console command `command` under a name. Returns the notes of the board.
+fn upload_by<B: Board + ?Sized>(
+    console: &mut Console<B>,
+    command: &str,
+    bytes: &[u8],
+    name: Option<&str>,
+    session: u8,
+    progress: &mut Progress,
+) -> Result<Vec<String>, TransferError> {
+    let mut command = command_for(command, bytes);
     if let Some(name) = name {
         command = format!("{command} {name}");
     }

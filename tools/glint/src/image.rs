@@ -4,10 +4,12 @@ use crate::error::{FormatError, InputError, Location, quote};
 use crate::formats::glm;
 use crate::scene;
 use crate::texture;
+use crate::wireframe;
 use glint_core::deviation::Deviation;
 use glint_core::flash::{Contents, EncodeError, Image, Item, Kind, Piece, encode};
 use glint_core::mesh::{Mesh, is_name};
 use glint_core::picture::Size;
+use glint_core::wireframe::CUBE_NAME;
 use glint_scene::{Board, Defaults, LineError, Reason, Scene, lines};
 use glint_scene_file::SceneFile;
 use std::borrow::Cow;
@@ -144,7 +146,7 @@ pub fn make(bitstream: &[u8], firmware: &[u8], pieces: &[Piece]) -> Result<Vec<u
     Ok(image)
 }
 
-/// Checks an image: its parts, its checksums, the names of its items, its meshes and textures, the commands of its scenes, and the names in its
+/// Checks an image: its parts, its checksums, the names of its items, its meshes, textures and wireframe programs, the commands of its scenes, and the names in its
 /// lists.
 ///
 /// # Errors
@@ -163,13 +165,13 @@ pub fn check_contents(contents: &Contents) -> Result<(), FormatError> {
     let mut names = HashSet::new();
     for item in contents.items() {
         let list = match item.kind {
-            // A board copies both to its uploads, which have one list of names.
-            Kind::Mesh | Kind::Texture => "upload",
+            // A board copies them to its uploads, which have one list of names.
+            Kind::Mesh | Kind::Texture | Kind::Program => "upload",
             Kind::Scene | Kind::List => item.kind.name(),
         };
         if !names.insert((list, item.name)) {
             let found = match list {
-                "upload" => "two meshes or textures of this name",
+                "upload" => "two meshes, textures or programs of this name",
                 _ => "two items of this kind and name",
             };
             let error = FormatError::whole("names that differ", found);
@@ -183,6 +185,10 @@ pub fn check_contents(contents: &Contents) -> Result<(), FormatError> {
             Kind::Texture => {
                 let bytes = item.checked().map_err(format_error)?;
                 texture::checked(bytes).map_err(|error| in_item(&item, error))?;
+            }
+            Kind::Program => {
+                let bytes = item.checked().map_err(format_error)?;
+                wireframe::check(bytes).map_err(|error| in_item(&item, error))?;
             }
             Kind::Scene => {
                 let text = item.text().map_err(format_error)?;
@@ -203,7 +209,7 @@ pub fn check_contents(contents: &Contents) -> Result<(), FormatError> {
     Ok(())
 }
 
-/// The meshes and textures of an image, and the meshes of its firmware.
+/// The meshes, textures and wireframe programs of an image, and those of its firmware.
 struct ImageBoard<'i> {
     contents: &'i Contents<'i>,
     /// The meshes that the scene uses.
@@ -238,6 +244,10 @@ impl Board for ImageBoard<'_> {
 
     fn has_texture(&self, name: &str) -> bool {
         self.contents.find(Kind::Texture, name).is_some()
+    }
+
+    fn has_program(&self, name: &str) -> bool {
+        name == CUBE_NAME || self.contents.find(Kind::Program, name).is_some()
     }
 }
 

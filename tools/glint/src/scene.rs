@@ -105,6 +105,10 @@ impl Board for Meshes<'_> {
     fn has_texture(&self, name: &str) -> bool {
         AnyBoard.has_texture(name)
     }
+
+    fn has_program(&self, name: &str) -> bool {
+        AnyBoard.has_program(name)
+    }
 }
 
 /// The wireframe program that is built into the firmware.

@@ -8,8 +8,8 @@ use crate::polygons::Polygons;
 use glint_core::fixed::Q5_11;
 use glint_core::wireframe::text::{assemble, lines_after_end};
 use glint_core::wireframe::{
-    self, Instruction, Key, MAX_SEGMENTS, Motion, Point, Pose, Program, ProgramError, Segment,
-    Viewing, Window, accumulate, unique_edges,
+    self, EXTENSIONS, Instruction, Key, MAX_SEGMENTS, Motion, Point, Pose, Program, ProgramError,
+    Segment, Viewing, Window, accumulate, unique_edges,
 };
 use std::fmt::Write;
 use std::path::Path;
@@ -32,9 +32,10 @@ impl Form {
         let extension = path
             .extension()
             .map(|extension| extension.to_string_lossy().to_ascii_lowercase());
+        let [text, binary] = EXTENSIONS;
         match extension.as_deref() {
-            Some("wft") => Ok(Self::Text),
-            Some("wfb") => Ok(Self::Binary),
+            Some(extension) if extension == text => Ok(Self::Text),
+            Some(extension) if extension == binary => Ok(Self::Binary),
             other => {
                 let found = other.map_or("no extension".into(), |other| {
                     format!("'.{}'", other.escape_default())

@@ -7,6 +7,7 @@
 use glint_core::console::{NameList, Names};
 use glint_core::field::{EXAMPLES, Field, KINDS, MovingSphere, Primitive};
 use glint_core::fixed::Turns;
+use glint_core::wireframe::CUBE_NAME;
 use serde::{Deserialize, Serialize};
 
 /// Number of pictures in a full turn of a moving field.
@@ -54,6 +55,8 @@ pub struct Choices {
     fields: Vec<Choice>,
     /// Names of the textures, uploaded or in the flash, for completion.
     textures: Vec<String>,
+    /// Names of the wireframe programs, built-in, uploaded or in the flash, for completion.
+    programs: Vec<String>,
     /// Names of the uploads, for completion.
     uploads: Vec<String>,
 }
@@ -101,7 +104,11 @@ impl Choices {
             fields: kinds
                 .map(|(_, example)| field(example.field, example.look))
                 .collect(),
-            textures: texture_names(models),
+            textures: names_of("texture", models),
+            programs: [CUBE_NAME.to_owned()]
+                .into_iter()
+                .chain(names_of("program", models))
+                .collect(),
             uploads: upload_names(models),
         }
     }
@@ -134,6 +141,7 @@ impl Names for Choices {
             NameList::Scenes => (&[List::Meshes, List::Scenes][..], &[][..]),
             NameList::Meshes => (&[List::Meshes][..], &[][..]),
             NameList::Textures => (&[][..], &self.textures[..]),
+            NameList::Programs => (&[][..], &self.programs[..]),
             NameList::Uploads => (&[][..], &self.uploads[..]),
         };
         let choices = lists.iter().flat_map(|list| self.of(*list));
@@ -156,12 +164,13 @@ fn mesh_names(models: &[String]) -> Vec<&str> {
     names
 }
 
-/// The names of textures in a reply to `models`, without duplicates: an uploaded texture may be a copy of a texture in the flash.
-fn texture_names(models: &[String]) -> Vec<String> {
+/// The names of textures or of programs in a reply to `models`, without duplicates: an upload may be a copy of an item in the flash.
+fn names_of(kind: &str, models: &[String]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for line in models {
         let words: Vec<_> = line.split(' ').collect();
-        if let ["flash", "texture", name, "bytes", _] | ["texture", name, ..] = words[..]
+        if let ["flash", of, name, "bytes", _] | [of, name, ..] = words[..]
+            && of == kind
             && names.iter().all(|known| known != name)
         {
             names.push(name.to_owned());
@@ -174,7 +183,7 @@ fn texture_names(models: &[String]) -> Vec<String> {
 fn upload_names(models: &[String]) -> Vec<String> {
     let name = |line: &String| {
         let mut words = line.split(' ');
-        matches!(words.next(), Some("mesh" | "texture")).then_some(())?;
+        matches!(words.next(), Some("mesh" | "texture" | "program")).then_some(())?;
         words.next().map(str::to_owned)
     };
     models.iter().filter_map(name).collect()
@@ -219,7 +228,8 @@ mod tests {
             &lines("scene cube there\nscene hull flash\nscene cubes there\nscene default there"),
             &lines(
                 "built-in cube\nflash hull bytes 7\nflash texture wood bytes 9\nflash texture rust bytes 9\n\
-                 texture wood size 8 8 bytes 9\nuploads 1 of 17\nfree 1 bytes",
+                 flash program ball.wfb bytes 96\ntexture wood size 8 8 bytes 9\nprogram net segments 1 bytes 80\n\
+                 uploads 2 of 18\nfree 1 bytes",
             ),
             &lines(
                 "field\n  show\n  off|FIELD: off or menger:DEPTH or moving:R,ORBIT[,DEGREES] or other:X",
@@ -238,6 +248,9 @@ mod tests {
             ("object add h", "hull"),
             ("load 9 0 w", "wood"),
             ("unload w", "wood"),
+            ("program b", "ball.wfb"),
+            ("program c", "cube"),
+            ("unload n", "net"),
             ("unload r", ""),
             ("unload h", ""),
             ("scene w", ""),

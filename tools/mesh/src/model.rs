@@ -9,6 +9,7 @@ use crate::texture::is_texture;
 use glint_core::framing::upright;
 use glint_core::matrix::Axis;
 use glint_core::mesh::{MAX_NAME, Mesh};
+use glint_core::wireframe::is_program_file;
 use std::path::Path;
 
 /// A mesh for boards, with the report of its conversion.
@@ -77,7 +78,7 @@ fn is_inside_out(mesh: &Mesh) -> bool {
 /// a name cannot contain. `None` for a generator.
 pub fn board_name(file: &str) -> Option<String> {
     let path = Path::new(file);
-    let name = if is_texture(file) {
+    let name = if is_texture(file) || is_program_file(file) {
         path.file_name()?
     } else {
         path.extension().and(path.file_stem())?

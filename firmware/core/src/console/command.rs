@@ -7,6 +7,7 @@ use super::argument::{Argument, Default, Flag, Off, Or, Own, Reader, WordArgumen
 use super::error::{ParseError, ParseErrorKind};
 use super::forms::{FIELD, LIT, MESHES, Order, Row, key, option, switch};
 use super::object::Object;
+use super::program::Program;
 use super::projection::Projection;
 use super::syntax::{Parameter, Shape, Syntax, WordKind};
 use super::table::{commands, part, shows};
@@ -58,9 +59,9 @@ commands! {
         scene Scene(name: Option<SceneName>): "list meshes and scenes, or show one; a scene sets everything that the picture depends on"
             => key(Order::Subject, "teapot").named("model").without(&["object", "program"]);
         load Load(upload: Upload, name: Option<UploadName>) in UPLOAD: "upload a mesh or a texture (binary) under a name (default model) and show it";
-        models Models() in UPLOAD: "list the meshes, the textures and the memory for uploads";
-        unload Unload(name: UploadName) in UPLOAD: "remove an uploaded mesh or texture";
-        program Program(upload: Option<Upload>) in WIREFRAME: "upload a wireframe program (binary) and show it; without arguments, restart the last, as buttons 2 and 3 do"
+        models Models() in UPLOAD: "list the meshes, the textures, the programs and the memory for uploads";
+        unload Unload(name: UploadName) in UPLOAD: "remove an uploaded mesh, texture or program";
+        program Program(action: Option<Program>) in WIREFRAME: "show or upload (binary) a wireframe program; without arguments, restart the last, as buttons 2 and 3 do"
             => key(Order::Subject, "cube");
         press Press(key: Key, rotate: Flag) in WIREFRAME: "press a key of the wireframe for one frame: arrow keys pan, or rotate; zoom keys move along z";
     }

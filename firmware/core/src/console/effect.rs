@@ -2,6 +2,7 @@
 
 use super::command::{Command, Setting};
 use super::object::ObjectAction;
+use super::program::ProgramAction;
 use super::values::{GestureAction, ImuAction};
 
 /// Effect of a command on the picture. A line of a scene is a command with one of the effects `Option`, `Subject`, `Wireframe` and
@@ -14,8 +15,8 @@ pub enum Effect<'c, 'a> {
     Option(&'c Setting<'a>),
     /// The command shows the mesh or the scene with this name.
     Subject(&'a str),
-    /// The command shows the wireframe.
-    Wireframe,
+    /// The command shows the wireframe: the program with this name, or for `None` the program of the scene.
+    Wireframe(Option<&'a str>),
     /// The command sets or starts the motion of the camera or the wireframe.
     Motion,
     /// The command changes the uploads.
@@ -29,10 +30,15 @@ impl<'a> Command<'a> {
             Self::Set(setting) => setting.effect(),
             Self::Load { .. }
             | Self::Unload { .. }
-            | Self::Program { upload: Some(_) }
+            | Self::Program {
+                action: Some(ProgramAction::Upload { .. }),
+            }
             | Self::Replay { upload: Some(_) } => Effect::Uploads,
             Self::Scene { name: Some(name) } => Effect::Subject(name),
-            Self::Program { upload: None } => Effect::Wireframe,
+            Self::Program {
+                action: Some(ProgramAction::Show(name)),
+            } => Effect::Wireframe(Some(name)),
+            Self::Program { action: None } => Effect::Wireframe(None),
             Self::Press { .. }
             | Self::Orbit { .. }
             | Self::Mounting { mounting: Some(_) }

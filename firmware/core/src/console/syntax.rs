@@ -74,7 +74,9 @@ pub enum NameList {
     Meshes,
     /// Names of uploaded textures.
     Textures,
-    /// Names of uploaded meshes and textures.
+    /// Names of wireframe programs.
+    Programs,
+    /// Names of uploads: meshes, textures and programs.
     Uploads,
 }
 

@@ -59,7 +59,7 @@ impl WordArgument for TextureName {
     }
 }
 
-/// The name of an upload, a mesh or a texture.
+/// The name of an upload: a mesh, a texture or a program.
 pub struct UploadName;
 
 impl WordArgument for UploadName {

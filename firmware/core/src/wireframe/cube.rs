@@ -3,6 +3,9 @@
 use super::format::{Opcode, WORD_BYTES};
 use crate::fixed::Q5_11;
 
+/// Name of the built-in program.
+pub const CUBE_NAME: &str = "cube";
+
 /// The built-in program: a cube of side 4 about the origin, seen from (0, 0, 8) through the window ±4 × ±2.25 at z = 4.
 pub static CUBE: [[u8; WORD_BYTES]; 16] = program();
 

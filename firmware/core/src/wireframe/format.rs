@@ -5,6 +5,18 @@ use crate::fixed::Q5_11;
 
 /// Largest number of segments of a program.
 pub const MAX_SEGMENTS: u32 = 65_535;
+/// Extensions of program files: of the text form, and of the binary form.
+pub const EXTENSIONS: [&str; 2] = ["wft", "wfb"];
+
+/// Whether the name of a file has one of the [`EXTENSIONS`].
+pub fn is_program_file(name: &str) -> bool {
+    let extension = name.rsplit_once('.').map(|(_, extension)| extension);
+    extension.is_some_and(|extension| {
+        let mut known = EXTENSIONS.iter();
+        known.any(|known| extension.eq_ignore_ascii_case(known))
+    })
+}
+
 /// Number of bytes of a word in memory: 128 bits, little-endian, of which an instruction uses the lower 99.
 pub const WORD_BYTES: usize = 16;
 

@@ -20,6 +20,7 @@ fn pieces() -> Vec<Piece> {
         piece(Kind::Scene, "lamp", b"size 640 360\nfield sphere:0.6\n"),
         piece(Kind::List, "demo", b"lamp\n"),
         piece(Kind::Texture, "wood", &[9; 33]),
+        piece(Kind::Program, "ball.wfb", &[1; 48]),
     ]
 }
 

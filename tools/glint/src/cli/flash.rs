@@ -6,6 +6,7 @@ use super::convert::load;
 use super::messages::{note, print_json, say, warn};
 use super::progress::{advance, bar, show_simulation, spinner};
 use super::texture::{MeshTextureArguments, load_texture, print_textures};
+use super::wireframe::read as read_program;
 use anyhow::Context;
 use clap::Args;
 use glint::board::{self, Board, SerialBoard};
@@ -22,6 +23,7 @@ use glint::transfer;
 use glint_core::flash::FIRMWARE;
 use glint_core::matrix::Axis;
 use glint_core::mesh::{MAX_NAME, is_name};
+use glint_core::wireframe::is_program_file;
 use std::io::{self, Write};
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -60,15 +62,15 @@ pub struct FlashArguments {
     json: bool,
 }
 
-/// Upload a model or a texture to a board under a name and show it; other uploads stay on the board.
+/// Upload a model, a texture or a wireframe program to a board under a name and show it; other uploads stay on the board.
 ///
 /// An uploaded texture replaces the texture of every textured face; the rest of the scene stays.
 #[derive(Args)]
 pub struct UploadArguments {
-    /// Mesh file, name of a generator, or texture: a PNG, JPEG or .glt file.
+    /// Mesh file, name of a generator, texture (a PNG, JPEG or .glt file), or wireframe program (.wft or .wfb).
     model: String,
-    /// Name on the board, at most 24 visible characters of ASCII [default: a mesh file's name without its extension, a texture file's
-    /// name, or `model` for a generator].
+    /// Name on the board, at most 24 visible characters of ASCII [default: a mesh file's name without its extension, the name of a texture
+    /// or program file, or `model` for a generator].
     #[arg(long, value_parser = mesh_name)]
     name: Option<String>,
     #[command(flatten)]
@@ -192,9 +194,32 @@ fn write_flash(path: &Path) -> anyhow::Result<()> {
     ))
 }
 
+/// The kind of an upload.
+#[derive(Clone, Copy)]
+enum Kind {
+    /// A mesh, with the axis that points up.
+    Mesh { up: Axis },
+    /// A texture.
+    Texture,
+    /// A wireframe program.
+    Program,
+}
+
+/// An upload in the form for the board.
+struct Loaded {
+    bytes: Vec<u8>,
+    kind: Kind,
+    /// Reports on the converted textures.
+    textures: Vec<TextureReport>,
+}
+
 impl UploadArguments {
     pub fn run(self) -> anyhow::Result<()> {
-        let (bytes, up, textures) = self.load()?;
+        let Loaded {
+            bytes,
+            kind,
+            textures,
+        } = self.load()?;
         let board = self.board.name()?;
         if board.is_simulated() {
             note(
@@ -207,8 +232,11 @@ impl UploadArguments {
         let bar = bar("upload");
         let mut renderer =
             BoardRenderer::new(Console::new(&mut *board)).with_progress(advance(&bar));
-        let notes = renderer.upload(&bytes, name.as_deref())?;
-        if let Some(up) = up.filter(|_| !self.keep_scene) {
+        let notes = match kind {
+            Kind::Program => renderer.upload_program(&bytes, name.as_deref())?,
+            Kind::Mesh { .. } | Kind::Texture => renderer.upload(&bytes, name.as_deref())?,
+        };
+        if let (Kind::Mesh { up }, false) = (kind, self.keep_scene) {
             let name = name.as_deref().unwrap_or(transfer::MODEL);
             transfer::show(renderer.console(), name, up)?;
         }
@@ -231,21 +259,41 @@ impl UploadArguments {
         ))
     }
 
-    /// The mesh or texture for the board, the axis of a mesh that points up, and reports on the converted textures.
-    fn load(&self) -> anyhow::Result<(Vec<u8>, Option<Axis>, Vec<TextureReport>)> {
-        let textures = self.textures.options();
-        if is_texture(&self.model) {
-            for (is_given, option) in [
-                (self.keep_scale, "--keep-scale"),
-                (textures.left_out, "--no-textures"),
-                (self.keep_scene, "--keep-scene"),
-            ] {
-                if is_given {
-                    return Err(bad_value(option, "a mesh", "a texture").into());
-                }
+    /// Checks that no option is given that only meshes have.
+    fn check_no_mesh(&self, found: &str) -> anyhow::Result<()> {
+        for (is_given, option) in [
+            (self.keep_scale, "--keep-scale"),
+            (self.textures.options().left_out, "--no-textures"),
+            (self.keep_scene, "--keep-scene"),
+        ] {
+            if is_given {
+                return Err(bad_value(option, "a mesh", found).into());
             }
-            let (bytes, report) = load_texture(Path::new(&self.model), &textures)?;
-            return Ok((bytes, None, vec![report]));
+        }
+        Ok(())
+    }
+
+    fn load(&self) -> anyhow::Result<Loaded> {
+        let textures = self.textures.options();
+        let path = Path::new(&self.model);
+        if is_program_file(&self.model) {
+            self.check_no_mesh("a wireframe program")?;
+            self.textures
+                .refuse("a mesh or a texture", "a wireframe program")?;
+            return Ok(Loaded {
+                bytes: read_program(path)?,
+                kind: Kind::Program,
+                textures: Vec::new(),
+            });
+        }
+        if is_texture(&self.model) {
+            self.check_no_mesh("a texture")?;
+            let (bytes, report) = load_texture(path, &textures)?;
+            return Ok(Loaded {
+                bytes,
+                kind: Kind::Texture,
+                textures: vec![report],
+            });
         }
         let options = Options {
             keep_scale: self.keep_scale,
@@ -256,7 +304,10 @@ impl UploadArguments {
         if let Some(remark) = model.inside_out() {
             warn(format_args!("{}: {remark}", self.model.escape_debug()));
         }
-        let textures = model.textures().to_vec();
-        Ok((model.mesh, Some(model.up), textures))
+        Ok(Loaded {
+            textures: model.textures().to_vec(),
+            bytes: model.mesh,
+            kind: Kind::Mesh { up: model.up },
+        })
     }
 }

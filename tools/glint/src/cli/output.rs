@@ -4,6 +4,7 @@
 use super::common::bad_value;
 use super::messages::reserve_stdout;
 use anyhow::Context;
+use glint_core::wireframe::EXTENSIONS;
 use rustix::termios::isatty;
 use serde::Serialize;
 use std::fs::{File, Permissions};
@@ -26,7 +27,7 @@ pub const MESH: &[&str] = &["obj", "stl", "ply", "glm"];
 /// Extensions of a texture file and of a picture of a texture.
 pub const TEXTURE: &[&str] = &["glt", "png"];
 /// Extensions of a program file of the wireframe simulator.
-pub const PROGRAM: &[&str] = &["wft", "wfb"];
+pub const PROGRAM: &[&str] = &EXTENSIONS;
 /// Extensions of a flash image file.
 pub const IMAGE: &[&str] = &["bin", "img"];
 /// Extensions of a table file.

@@ -83,6 +83,14 @@ impl MeshTextureArguments {
             ..self.texels.options()
         }
     }
+
+    /// Checks that no option of texels is given, like [`TexelArguments::refuse`].
+    ///
+    /// # Errors
+    /// An option is given.
+    pub fn refuse(&self, expected: &str, instead: &str) -> Result<(), InputError> {
+        self.texels.refuse(expected, instead)
+    }
 }
 
 /// Reads a texture file, and converts it with these options.

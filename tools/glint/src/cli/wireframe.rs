@@ -325,7 +325,7 @@ impl RenderArguments {
 }
 
 /// Reads a program, and warns of data after its end.
-fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
+pub fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
     let Source { bytes, ignored } = wireframe::read(path)?;
     if let Some(ignored) = ignored {
         warn(format_args!("{}: {ignored}", path.display()));

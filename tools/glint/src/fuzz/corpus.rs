@@ -10,10 +10,11 @@ use crate::formats::{gltf, write};
 use crate::generate;
 use crate::image;
 use crate::polygons::{Corner, Polygons, Rgb8};
-use glint_core::flash::CONTENTS;
+use glint_core::flash::{CONTENTS, Kind, Piece};
 use glint_core::mesh::Mesh;
 use glint_core::orientation::log::{Setup, record, to_bytes};
 use glint_core::orientation::{Sample, Units};
+use glint_core::wireframe::CUBE;
 use glint_core::wireframe::text::assemble;
 use glint_scene_file::{NAMES, SceneFile, built_in};
 use glint_texture::example;
@@ -164,12 +165,22 @@ fn contents() -> Vec<Vec<u8>> {
         "title = \"x\"\nmodel = \"sponge:0\"\ncamera = \"2.5 40 65\"\n",
     );
     let scenes = NAMES.into_iter().filter_map(built_in);
-    let image = |scene: SceneFile| {
-        let pieces = image::pieces(&[scene]).ok()?;
+    let pieces = |scene: SceneFile| image::pieces(&[scene]).ok();
+    let image = |pieces: Vec<Piece>| {
         let image = image::make(&[], &[0; 64], &pieces).ok()?;
         image.get(CONTENTS..).map(<[u8]>::to_vec)
     };
-    scenes.chain(small.ok()).filter_map(image).collect()
+    let piece = |kind, bytes: &[u8]| Piece {
+        kind,
+        name: "ball.wfb".to_owned(),
+        bytes: bytes.to_vec(),
+    };
+    let program = vec![
+        piece(Kind::Program, CUBE.as_flattened()),
+        piece(Kind::Scene, b"program ball.wfb\n"),
+    ];
+    let contents = scenes.chain(small.ok()).filter_map(pieces);
+    contents.chain([program]).filter_map(image).collect()
 }
 
 /// Logs of 200, 30 and 1 samples in a board's format, with different options. The two longer logs contain rest, motion, repeated
@@ -213,6 +224,7 @@ const WIREFRAMES: &[&str] = &[
 const CONSOLE: &[&str] = &[
     "help\rhelp camera\rinfo\rscene\rscene cube\rscene model\r",
     "object add cube scale 0.5 rotate z 30 move 1,0,-2 colour ff8000\robject list\robject move 1 0,0,1\robject remove all\rmodels\r",
+    "program\rprogram cube\rprogram 96 deadbeef ball.wfb\rprogram ball.wfb\runload ball.wfb\rpress up\r",
     "camera 2.5 30 60\rcamera 5 -720.125 179.99999\rorbit 12\rorbit\r",
     "view\rview 0 -3 0 1 0 0 0 0 -1 0 1 0 0.9 0.1\r",
     "field\rfield menger:4\rfield cubes:2,0.5\rfield off\rstereo\rstereo 0.05,3\rstereo 0.05,3,red-cyan\rstereo off\rprepass on\r",

@@ -20,7 +20,7 @@ pub fn run(input: &[u8]) -> bool {
         for item in contents.items() {
             assert!(contents.find(item.kind, item.name).is_some());
             match item.kind {
-                Kind::Mesh | Kind::Texture => drop(item.checked()),
+                Kind::Mesh | Kind::Texture | Kind::Program => drop(item.checked()),
                 Kind::Scene => drop(item.text().map(run_scene)),
                 Kind::List => drop(item.text().map(run_list)),
             }
@@ -42,7 +42,7 @@ fn run_scene(text: &str) {
     for line in lines(text) {
         match line {
             Ok((_, line)) => {
-                for name in [line.mesh(), line.texture()] {
+                for name in [line.mesh(), line.texture(), line.program()] {
                     assert!(name.is_none_or(|name| text.contains(name)));
                 }
                 if let Err(error) = line.apply(&mut scene, &mut AnyBoard) {

@@ -187,16 +187,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         }
         self.console.command(&size_command(size))?;
         self.console.command(&samples_command(samples))?;
-        let session = self.stage(program)?;
-        let progress = &mut *self.progress;
-        transfer::upload_for(
-            &mut self.console,
-            "program",
-            program,
-            session,
-            progress,
-            &mut |_| {},
-        )?;
+        self.upload_program(program, None)?;
         let mut rotate = "";
         for action in script {
             match action {
@@ -220,6 +211,22 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         let session = self.stage(bytes)?;
         let (console, progress) = (&mut self.console, &mut *self.progress);
         Ok(transfer::upload(console, bytes, name, session, progress)?)
+    }
+
+    /// Uploads a wireframe program under a name, by default `program`, and draws it. Returns the notes of the board.
+    ///
+    /// # Errors
+    /// As for [`upload`](Self::upload).
+    pub fn upload_program(
+        &mut self,
+        bytes: &[u8],
+        name: Option<&str>,
+    ) -> Result<Vec<String>, Error> {
+        let session = self.stage(bytes)?;
+        let (console, progress) = (&mut self.console, &mut *self.progress);
+        Ok(transfer::upload_program(
+            console, bytes, name, session, progress,
+        )?)
     }
 
     /// Writes the data of an upload to the board's memory, if the route is the memory. Returns the

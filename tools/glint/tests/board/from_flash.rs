@@ -13,6 +13,7 @@ use glint_core::demo::TURN_MS;
 use glint_core::digits::Display;
 use glint_core::flash::{CONTENTS, Kind, Piece, encode};
 use glint_core::texture::{self, Source};
+use glint_core::wireframe::CUBE;
 use glint_scene_file::SceneFile;
 use virtual_board::virtual_flash::Flash;
 
@@ -271,6 +272,10 @@ fn a_scene_that_cannot_be_shown_is_left_out() {
     let scene = |text: &str| piece(Kind::Scene, "bad", text);
     let missing = scene("size 640 360\nscene gear\n");
     let damaged = piece(Kind::Mesh, "gear", vec![0; 64]);
+    let program = scene("size 640 360\nprogram net.wfb\n");
+    let endless = piece(Kind::Program, "net.wfb", CUBE[..15].as_flattened());
+    let no_program = "program `net.wfb`: expected cube or an uploaded program, `models` lists them";
+    let no_end = "program net.wfb of the flash: wireframe program, word 16: expected end, found the end of the input";
     let failing = scene("field box:1,1,1\nedges over\n");
     let no_mesh = "scene bad: no mesh `gear`, expected a built-in mesh or a mesh of the flash";
     let no_command = "scene bad: line 1: \"frobnicate\" (column 1): expected a command";
@@ -288,6 +293,8 @@ fn a_scene_that_cannot_be_shown_is_left_out() {
             4,
             "mesh gear of the flash: mesh byte 0: expected ",
         ),
+        (vec![program.clone()], 4, no_program),
+        (vec![program, endless], 4, no_end),
         (vec![scene("frobnicate\n")], 7, no_command),
         (vec![scene("fov 60\nreboot\n")], 7, no_picture),
         (vec![failing], 8, "edges: not available for objects"),

@@ -53,7 +53,7 @@ fn meshes_have_names_and_share_the_memory() {
         format!("mesh a vertices 24 triangles 12 bytes {}", a.len()),
         format!("mesh b vertices 12 triangles 20 bytes {}", b.len()),
         format!("mesh c vertices 42 triangles 80 bytes {}", c.len()),
-        "uploads 3 of 17".to_owned(),
+        "uploads 3 of 18".to_owned(),
         free(a.len() + b.len() + c.len()),
     ];
     assert_eq!(list(&mut console), all);

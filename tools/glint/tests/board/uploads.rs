@@ -261,7 +261,7 @@ fn a_texture_is_uploaded_under_a_name() {
     for line in [
         "texture red size 8 8 bytes 160",
         "texture green size 8 8 bytes 160",
-        "uploads 2 of 17",
+        "uploads 2 of 18",
     ] {
         assert!(models.contains(line), "{models}");
     }
@@ -276,7 +276,7 @@ fn a_texture_is_uploaded_under_a_name() {
         ),
         (
             "load 160 0 own",
-            "load `own`: the keyword for a mesh's own textures, expected another name",
+            "upload `own`: the keyword for a mesh's own textures, expected another name",
         ),
     ] {
         let found = said(&mut console, line);
@@ -352,5 +352,5 @@ fn an_upload_replaces_one_of_the_other_kind() {
     assert_eq!(console.command("texture").unwrap(), ["texture model"]);
     assert_eq!(info::<String>(&mut console, "scene"), "cube");
     let models = console.command("models").unwrap();
-    assert!(models.contains(&"uploads 1 of 17".to_owned()), "{models:?}");
+    assert!(models.contains(&"uploads 1 of 18".to_owned()), "{models:?}");
 }

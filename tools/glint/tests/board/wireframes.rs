@@ -1,7 +1,7 @@
 //! The wireframe simulator on the emulated board, with bouncing buttons, switches, commands and
 //! uploads. Every frame is checked.
 
-use crate::common::{address, console, emulator, info, renderer};
+use crate::common::{address, console, emulator, info, mesh, renderer};
 use glint::board::{EmulatedBoard, SimulatedBoard};
 use glint::board::{Simulation, Uart};
 use glint::console::{Console, ConsoleError};
@@ -16,15 +16,18 @@ const MS: u64 = 81_250;
 /// Addresses of the two frame buffers.
 const BUFFERS: [u32; 2] = [0x4100_0000, 0x4120_0000];
 
-/// The built-in program of the firmware: a cube of side 4.
-fn cube() -> Vec<u8> {
-    let viewing = Viewing {
+fn viewing() -> Viewing {
+    Viewing {
         eye: wireframe::numbers("0,0,8", "").unwrap(),
         plane: "4".parse().unwrap(),
         window: wireframe::window("-4,-2.25,4,2.25").unwrap(),
-    };
+    }
+}
+
+/// The built-in program of the firmware: a cube of side 4.
+fn cube() -> Vec<u8> {
     let cube = generate::named("cube").unwrap();
-    wireframe::make(cube, Some(4.0), &viewing).unwrap().bytes
+    wireframe::make(cube, Some(4.0), &viewing()).unwrap().bytes
 }
 
 /// A program of two segments.
@@ -188,6 +191,102 @@ fn two_buttons_read_the_program_again() {
     let mut motion = Motion::default();
     assert!(motion.apply(Key::Up.step(false)));
     assert!(shown(&mut console)[0] == picture(&program, &motion));
+}
+
+/// Programs have names, as meshes and textures have, and are uploads like them.
+#[test]
+fn programs_with_names() {
+    let mut board = emulator();
+    let mut console = console(&mut board);
+    let (cross, still) = (cross(), Motion::default());
+    let ball = {
+        let ball = generate::named("icosphere:1").unwrap();
+        wireframe::make(ball, Some(4.0), &viewing()).unwrap().bytes
+    };
+    let upload = |console: &mut Console<SimulatedBoard<EmulatedBoard>>, bytes: &[u8], name| {
+        transfer::upload_program(console, bytes, name, 3, &mut |_, _| {})
+    };
+    let shows = |console: &mut Console<SimulatedBoard<EmulatedBoard>>, program: &[u8]| {
+        console.command("render").unwrap();
+        shown(console)[0] == picture(program, &still)
+    };
+    console.command("quality fast").unwrap();
+    upload(&mut console, &cross, Some("cross")).unwrap();
+    assert!(shows(&mut console, &cross));
+    upload(&mut console, &ball, Some("ball")).unwrap();
+    assert!(shows(&mut console, &ball));
+    let models = console.command("models").unwrap();
+    for line in [
+        format!("program cross segments 2 bytes {}", cross.len()),
+        format!("program ball segments 30 bytes {}", ball.len()),
+        "uploads 2 of 18".to_owned(),
+    ] {
+        assert!(models.contains(&line), "{line}: {models:?}");
+    }
+    for (command, program) in [
+        ("program cross", &cross),
+        ("program", &cross),
+        ("program cube", &cube()),
+        ("program ball", &ball),
+    ] {
+        console.command(command).unwrap();
+        assert!(shows(&mut console, program), "{command}");
+    }
+
+    // The name of the program stays while another subject is shown. A new scene begins without a name.
+    for (command, program) in [
+        ("scene torus", &ball),
+        ("scene wireframe", &cube()),
+        ("scene default", &cube()),
+    ] {
+        console.command(command).unwrap();
+        console.command("quality fast").unwrap();
+        console.command("program").unwrap();
+        assert!(shows(&mut console, program), "{command}");
+    }
+    upload(&mut console, &cross, None).unwrap();
+    console.command("program ball").unwrap();
+    console.command("scene wireframe").unwrap();
+    console.command("quality fast").unwrap();
+    assert!(shows(&mut console, &cross), "the upload without a name");
+
+    // Refused programs and names change nothing.
+    console.command("program ball").unwrap();
+    for (command, expected) in [
+        (
+            "program net",
+            "program `net`: expected cube or an uploaded program, `models` lists them",
+        ),
+        (
+            "program 96 0 menger",
+            "the name of a scene, expected another name",
+        ),
+        ("program net ball", "BYTES is \"net\" (column 9)"),
+    ] {
+        let error = console.command(command).unwrap_err().to_string();
+        assert!(error.contains(expected), "{command}: {error}");
+        assert!(shows(&mut console, &ball), "{command}");
+    }
+    let error = upload(&mut console, &ball[..40], Some("ball")).unwrap_err();
+    let expected = "program: previous scene kept: wireframe program, word 3: expected a word of";
+    assert!(error.to_string().contains(expected), "{error}");
+    assert!(shows(&mut console, &ball));
+
+    // The memory of a removed program is free again, and the other programs move there.
+    console.command("unload cross").unwrap();
+    assert!(shows(&mut console, &ball));
+    // A mesh replaces a program of its name, which is then no longer shown.
+    let mesh = mesh("icosphere:1");
+    transfer::upload(&mut console, &mesh, Some("ball"), 4, &mut |_, _| {}).unwrap();
+    console.command("program").unwrap();
+    assert!(shows(&mut console, &cross), "the upload without a name");
+    console.command("object add ball").unwrap();
+    let error = upload(&mut console, &ball, Some("ball")).unwrap_err();
+    let expected = "object 1 shows this mesh, expected `object remove 1` first";
+    assert!(error.to_string().contains(expected), "{error}");
+    console.command("unload program").unwrap();
+    console.command("program").unwrap();
+    assert!(shows(&mut console, &cube()));
 }
 
 #[test]

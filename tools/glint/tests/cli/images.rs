@@ -3,6 +3,7 @@
 use crate::common::{assert_has, folder, glint, refused, report, succeed};
 use glint_core::flash::{CONTENTS, FIRMWARE, Image, Kind, Piece, encode};
 use glint_core::texture::{self, Source};
+use glint_core::wireframe::CUBE;
 use glint_texture::example::small_png;
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
@@ -39,7 +40,9 @@ fn an_image_has_scenes_in_order_and_their_meshes() {
         "quality balanced\ncamera 4 30 60\nfield menger:4\n"
     );
     let kinds: Vec<Kind> = image.contents.items().map(|item| item.kind).collect();
-    assert_eq!(kinds.iter().filter(|kind| **kind == Kind::Mesh).count(), 1);
+    for kind in [Kind::Mesh, Kind::Texture] {
+        assert_eq!(kinds.iter().filter(|known| **known == kind).count(), 1);
+    }
     let list = succeed(&folder, "image list board.bin");
     assert!(list.starts_with("firmware "), "{list}");
     assert_has(&list, "mesh      gear  ");
@@ -193,9 +196,15 @@ fn what_boards_cannot_show_is_refused() {
         item(Kind::Texture, texture.unwrap()),
         item(Kind::Mesh, Vec::new()),
     ];
-    let expected =
-        "expected mesh same: names that differ, found two meshes or textures of this name";
+    let expected = "expected mesh same: names that differ, found two meshes, textures or programs of this name";
     is_refused(&upload, expected);
+    let endless = CUBE[..3].as_flattened();
+    let expected = "expected program same: word 4: end, found the end of the input";
+    is_refused(&[item(Kind::Program, endless.to_vec())], expected);
+    let missing = scene("a", "program same\n".to_owned());
+    let expected =
+        "expected scene a: line 1: a command that boards execute (program `same`: expected cube or";
+    is_refused(&[missing], expected);
 }
 
 /// Runs `glint flash --spi board.bin` with `folder` as the program search path.

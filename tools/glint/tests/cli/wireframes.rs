@@ -1,6 +1,8 @@
 //! `glint wireframe`.
 
-use crate::common::{SQUARE, all_refused, files_refused, folder, picture, report, succeed};
+use crate::common::{
+    SQUARE, all_refused, files_refused, folder, glint_within, picture, report, succeed,
+};
 
 const PROGRAM: &str = "\
 # a cross
@@ -102,6 +104,41 @@ fn refused_programs() {
         ",
     );
     assert!(!folder.join("out.wfb").exists());
+}
+
+/// `glint upload` takes both forms of a program, under the name of the file.
+#[test]
+fn uploads_of_programs() {
+    let folder = folder("wireframe_uploads");
+    std::fs::write(folder.join("a.wft"), format!("{PROGRAM}more\n")).unwrap();
+    succeed(&folder, "wireframe convert a.wft a.wfb");
+    for name in ["a.wft", "a.wfb"] {
+        let upload = format!("upload {name} --board emulated --json");
+        let output = glint_within(800, &folder, &upload, &[]);
+        let [text, error] =
+            [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap());
+        assert!(output.status.success(), "{error}");
+        let report: serde_json::Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(report["bytes"], 6 * 16);
+        let is_warned = error.contains("a.wft: 1 line after the end is ignored");
+        assert_eq!(is_warned, name == "a.wft", "{error}");
+    }
+    std::fs::write(folder.join("b.wft"), PROGRAM.replace("end\n", "")).unwrap();
+    all_refused(
+        &folder,
+        "
+        upload b.wft
+            b.wft: line 7: expected end, found the end of the input
+        upload gone.wfb
+            gone.wfb: expected a file to read, found…
+        upload a.wft --keep-scale
+            --keep-scale: expected a mesh, found a wireframe program
+        upload a.wft --keep-scene
+            --keep-scene: expected a mesh, found a wireframe program
+        upload a.wft --palette 16
+            --palette: expected a mesh or a texture, found a wireframe program
+        ",
+    );
 }
 
 #[test]

@@ -3,14 +3,15 @@
 use glint_core::console::{Command, Event, HISTORY, LINE_MAX, LineEditor, NameList, Names};
 use proptest::prelude::*;
 
-/// The names of a machine with three uploads.
+/// The names of a machine with four uploads.
 struct Known;
 
 impl Names for Known {
     fn visit(&self, list: NameList, visit: &mut dyn FnMut(&str)) {
-        let [meshes, textures, built_in, scenes] = [
+        let [meshes, textures, programs, built_in, scenes] = [
             &["hull", "hull-2"][..],
             &["wood"],
+            &["ball.wfb"],
             &["cube", "torus"],
             &["cubes", "menger"],
         ];
@@ -18,7 +19,8 @@ impl Names for Known {
             NameList::Scenes => [built_in, meshes, scenes].concat(),
             NameList::Meshes => [built_in, meshes].concat(),
             NameList::Textures => textures.to_vec(),
-            NameList::Uploads => [meshes, textures].concat(),
+            NameList::Programs => programs.to_vec(),
+            NameList::Uploads => [meshes, textures, programs].concat(),
         };
         names.into_iter().for_each(visit);
     }
@@ -203,6 +205,8 @@ fn tab_completes_names() {
     assert_lines(b"object a\tto\t\r", &["object add torus "]);
     assert_lines(b"unload h\t\t\r", &["unload hull"]);
     assert_lines(b"unload w\t\r", &["unload wood "]);
+    assert_lines(b"program b\t\r", &["program ball.wfb "]);
+    assert_lines(b"program 1 0 h\t\r", &["program 1 0 hull"]);
     assert_lines(b"load 1 0 w\t\r", &["load 1 0 wood "]);
     assert_lines(b"field men\t4\r", &["field menger:4"]);
     assert_lines(b"field of\t\r", &["field off "]);
@@ -211,7 +215,7 @@ fn tab_completes_names() {
     let listed = |line: &[u8]| type_in(line).1.lines[1].clone();
     assert_eq!(listed(b"edges \t\r"), "off hidden over ");
     assert_eq!(listed(b"texture \t\r"), "own wood ");
-    assert_eq!(listed(b"unload \t\r"), "hull hull-2 wood ");
+    assert_eq!(listed(b"unload \t\r"), "hull hull-2 wood ball.wfb ");
     assert_eq!(
         listed(b"scene \t\r"),
         "cube torus hull hull-2 cubes menger "

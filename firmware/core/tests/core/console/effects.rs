@@ -19,7 +19,13 @@ fn commands_that_show_something_leave_the_picture() {
 
 #[test]
 fn uploads_are_apart_from_settings() {
-    for line in ["load 16 0", "unload a", "program 16 0", "replay 16 0"] {
+    for line in [
+        "load 16 0",
+        "unload a",
+        "program 16 0",
+        "program 16 0 a",
+        "replay 16 0",
+    ] {
         assert_eq!(parse(line).effect(), Effect::Uploads, "{line}");
     }
     let settings = "field off, object add a, object remove all, fov 60, zoom 2, fit, quality fast, size 320 180, backend cpu";
@@ -30,7 +36,8 @@ fn uploads_are_apart_from_settings() {
         assert_eq!(parse(line).effect(), Effect::Option(&setting), "{line}");
     }
     assert_eq!(parse("scene a").effect(), Effect::Subject("a"));
-    assert_eq!(parse("program").effect(), Effect::Wireframe);
+    assert_eq!(parse("program").effect(), Effect::Wireframe(None));
+    assert_eq!(parse("program a").effect(), Effect::Wireframe(Some("a")));
     for line in ["orbit", "imu look", "imu off", "gesture on"] {
         assert_eq!(parse(line).effect(), Effect::Motion, "{line}");
     }
