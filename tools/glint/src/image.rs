@@ -63,11 +63,11 @@ pub fn bitstream(file: &[u8]) -> Result<&[u8], FormatError> {
     data.ok_or_else(|| damaged(rest, "the field e with all bytes up to the end of the file"))
 }
 
-/// The items of an image for these scenes: each mesh that is not built into the firmware, each texture, each
+/// The items of an image for these scenes: each mesh that is not built into the firmware, each texture, each wireframe program, each
 /// scene, and the list of all scenes.
 ///
 /// # Errors
-/// A mesh or a texture cannot be read, or a name is invalid.
+/// A mesh, a texture or a program cannot be read, or a name is invalid.
 pub fn pieces(scenes: &[SceneFile]) -> Result<Vec<Piece>, InputError> {
     let of = |scene: &SceneFile| match scene.scenes() {
         [] => vec![scene.clone()],
@@ -92,6 +92,13 @@ pub fn pieces(scenes: &[SceneFile]) -> Result<Vec<Piece>, InputError> {
             check_name(name)?;
             let bytes = scene::texture(name, scene.folder())?;
             uploads.push(piece(Kind::Texture, name, bytes));
+        }
+        if let Some(name) = scene.program()
+            && is_new(&uploads, Kind::Program, name)
+        {
+            check_name(name)?;
+            let bytes = scene::program(name, scene.folder())?;
+            uploads.push(piece(Kind::Program, name, bytes));
         }
         list += &format!("{}\n", scene.name());
         if all.iter().all(|known| known.name != scene.name()) {

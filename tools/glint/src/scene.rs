@@ -5,6 +5,7 @@ use crate::error::{FormatError, InputError};
 use crate::generate;
 use crate::model;
 use crate::texture;
+use crate::wireframe;
 use glint_core::colour::Shading;
 use glint_core::console::Setting;
 use glint_core::mesh::Mesh;
@@ -67,6 +68,14 @@ pub fn texture(name: &str, folder: &Path) -> Result<Vec<u8>, InputError> {
     Ok(converted?.0)
 }
 
+/// The wireframe program of a scene in binary form: a file in the folder of the scene.
+///
+/// # Errors
+/// As for [`wireframe::read`].
+pub fn program(name: &str, folder: &Path) -> Result<Vec<u8>, InputError> {
+    Ok(wireframe::read(&folder.join(name))?.bytes)
+}
+
 /// The path of a scene's mesh in the folder of the scene; for a generator its name, unless a file
 /// has this name.
 pub fn path(name: &str, folder: &Path) -> String {
@@ -115,7 +124,7 @@ impl Board for Meshes<'_> {
 ///
 /// # Errors
 /// None: the program is valid.
-pub fn program() -> Result<Program<'static>, InputError> {
+pub fn built_in_program() -> Result<Program<'static>, InputError> {
     let program = Program::new_checked(CUBE.as_flattened());
     program.map_err(|error| refuse(error).in_file("program"))
 }
@@ -123,7 +132,7 @@ pub fn program() -> Result<Program<'static>, InputError> {
 /// Calls `draw` with the frame of a scene after `changes`.
 ///
 /// # Errors
-/// A mesh or the texture cannot be read, or no board can draw the scene, or no camera shows all meshes.
+/// A mesh, the texture or the wireframe program cannot be read, or no board can draw the scene, or no camera shows all meshes.
 pub fn draw<T>(
     file: &SceneFile,
     changes: &Changes,
@@ -140,6 +149,12 @@ pub fn draw<T>(
     let texture = texture.transpose()?;
     let texture = texture.as_deref().map(Texture::new_checked).transpose();
     let texture = texture.map_err(|error| in_scene(refuse(error)))?;
+    let program = file.program().map(|name| program(name, file.folder()));
+    let program = program.transpose()?;
+    let program = match &program {
+        Some(bytes) => wireframe::check(bytes).map_err(in_scene)?,
+        None => built_in_program()?,
+    };
     let mut board = Meshes {
         names,
         meshes: &meshes,
@@ -164,7 +179,7 @@ pub fn draw<T>(
         mesh: meshes.first().copied(),
         objects: &objects,
         replacement_texture: texture,
-        program: program()?,
+        program,
     })))
 }
 

@@ -19,6 +19,7 @@ use glint_core::light::{Background, Material};
 use glint_core::matrix::Axis;
 use glint_core::picture::{Samples, Size};
 use glint_core::quality::Quality;
+use glint_core::wireframe::{CUBE_NAME, is_program_file};
 use glint_scene::{AnyBoard, Board, Defaults, Line, Scene};
 
 use crate::built_in::{NAMES, TEXTS};
@@ -50,7 +51,7 @@ pub type Budget = Vec<(&'static str, f64)>;
 pub struct SceneFile {
     name: String,
     title: String,
-    /// The folder of the file, which contains its meshes and its texture.
+    /// The folder of the file, which contains its meshes, its texture and its wireframe program.
     folder: PathBuf,
     /// Console commands that set the picture.
     settings: Vec<String>,
@@ -206,9 +207,9 @@ impl SceneFile {
     ) {
         let key = row.key();
         let line = match (key, colour) {
-            ("program", _) if words == "cube" => row.command.to_owned(),
-            ("program", _) => {
-                let expected = "expected `cube`, the built-in program";
+            ("program", _) if words == CUBE_NAME => row.command.to_owned(),
+            ("program", _) if !is_program_file(words) || words.contains(' ') => {
+                let expected = "expected `cube`, the built-in program, or a file .wft (text) or .wfb (binary) without blanks in its name";
                 return file.add(span, format!("program: {}: {expected}", quote(words)));
             }
             // The material of a mesh is the colour of an object.
@@ -350,7 +351,12 @@ impl SceneFile {
         self.scene().texture.as_deref()
     }
 
-    /// The folder that contains the meshes and the texture; for a list of scenes, that of the first scene.
+    /// Name of the wireframe program, unless it is the built-in one; for a list of scenes, that of the first scene.
+    pub fn program(&self) -> Option<&str> {
+        self.scene().program.as_deref()
+    }
+
+    /// The folder that contains the meshes, the texture and the wireframe program; for a list of scenes, that of the first scene.
     pub fn folder(&self) -> &Path {
         self.scenes.first().map_or(&self.folder, Self::folder)
     }

@@ -1,9 +1,10 @@
 //! `glint scene`.
 
-use super::messages::{note, print_json, say};
+use super::messages::{note, print_json, say, warn};
 use anyhow::Context;
 use clap::{Args, Subcommand};
 use glint::scene::{self, Changes};
+use glint::wireframe::{self, Source};
 use glint_scene_file::{NAMES, SceneError, SceneFile, Steer, built_in};
 use serde::Serialize;
 
@@ -127,7 +128,7 @@ impl ListArguments {
     }
 }
 
-/// Reads a scene by its name or path, and prints its notes.
+/// Reads a scene by its name or path, prints its notes, and warns of data after the end of its wireframe program.
 ///
 /// # Errors
 /// As for [`glint_scene_file::read`].
@@ -135,6 +136,17 @@ pub fn read(name: &str) -> Result<SceneFile, SceneError> {
     let scene = glint_scene_file::read(name)?;
     for text in scene.notes() {
         note(format_args!("{}: {text}", name.escape_debug()));
+    }
+    if let Some(program) = scene.program() {
+        let path = scene.folder().join(program);
+        // Errors are reported when the scene is used.
+        if let Ok(Source {
+            ignored: Some(ignored),
+            ..
+        }) = wireframe::read(&path)
+        {
+            warn(format_args!("{}: {ignored}", path.display()));
+        }
     }
     Ok(scene)
 }

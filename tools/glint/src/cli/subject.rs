@@ -130,7 +130,7 @@ impl SubjectArguments {
                 Some((bytes, _)) => Some(Texture::new_checked(bytes)?),
                 None => None,
             },
-            program: scene::program()?,
+            program: scene::built_in_program()?,
         });
         let textures = loaded.iter().chain(&models);
         let textures = textures.flat_map(Model::textures).cloned();
@@ -183,9 +183,12 @@ impl SubjectArguments {
             let meshes = scene.meshes().iter();
             meshes.map(|name| scene::path(name, scene.folder()).into())
         });
-        let texture = scene.and_then(|scene| Some(scene.folder().join(scene.texture()?)));
-        let textures = [self.texture.clone(), texture].into_iter().flatten();
+        let of_scene = |name: Option<&str>| Some(scene?.folder().join(name?));
+        let texture = of_scene(scene.and_then(SceneFile::texture));
+        let program = of_scene(scene.and_then(SceneFile::program));
+        let files = [self.texture.clone(), texture, program];
         let camera = self.camera.file().map(PathBuf::from);
-        names.chain(meshes).chain(textures).chain(camera).collect()
+        let files = files.into_iter().flatten();
+        names.chain(meshes).chain(files).chain(camera).collect()
     }
 }

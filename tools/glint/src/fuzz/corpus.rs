@@ -249,6 +249,7 @@ const STL: &[&str] = &[
 /// Scenes of meshes without a camera, with a material.
 const SCENES: &[&str] = &[
     "title = \"a\"\nmodel = \"gear\"\nup = \"y\"\nfov = 40\nzoom = 1.5\nmaterial = \"jade\"\n",
+    "title = \"a\"\nprogram = \"ball.wfb\"\nsteer = \"buttons\"\n",
     "title = \"a\"\nobject = [\"cube\", \"torus scale 0.5 colour 00ff00\"]\northographic = 2\nmaterial = \"gold\"\n",
 ];
 

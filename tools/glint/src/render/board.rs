@@ -137,7 +137,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         Ok(commands(frame, MESH, name)?)
     }
 
-    /// Uploads the meshes of a scene that are not built into the firmware, and its texture. Returns the commands that show the scene
+    /// Uploads the meshes of a scene that are not built into the firmware, its texture and its wireframe program. Returns the commands that show the scene
     /// with camera, quality, size and samples of `frame`, without motion.
     fn load_scene(&mut self, scene: &SceneFile, frame: &Frame) -> Result<Vec<String>, Error> {
         for name in scene.meshes() {
@@ -147,6 +147,9 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         }
         if let Some(name) = scene.texture() {
             self.upload(&scene::texture(name, scene.folder())?, Some(name))?;
+        }
+        if let Some(name) = scene.program() {
+            self.upload_program(&scene::program(name, scene.folder())?, Some(name))?;
         }
         let mut lines = vec!["scene default".to_owned()];
         // The frame already has the camera that shows all meshes, and shows the start of an

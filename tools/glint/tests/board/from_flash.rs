@@ -6,15 +6,18 @@ use glint::board::{EmulatedBoard, built_firmware};
 use glint::board::{Simulation, Uart};
 use glint::fuzz::{Inputs, Target};
 use glint::image;
+use glint::render::{Frame, Subject, WireframeSubject, on_model};
 use glint::scene::{self, Changes};
+use glint::wireframe::{self, Form};
 use glint_core::block::Block;
 use glint_core::console::PROMPT;
 use glint_core::demo::TURN_MS;
 use glint_core::digits::Display;
 use glint_core::flash::{CONTENTS, Kind, Piece, encode};
 use glint_core::texture::{self, Source};
-use glint_core::wireframe::CUBE;
+use glint_core::wireframe::{CUBE, Key, Motion};
 use glint_scene_file::SceneFile;
+use std::path::{Path, PathBuf};
 use virtual_board::virtual_flash::Flash;
 
 /// A scene with a mesh from the flash.
@@ -131,6 +134,91 @@ fn a_scene_has_its_texture_from_the_flash() {
     assert_has(&command(&mut board, "texture"), "texture own\r\n");
     command(&mut board, "texture red");
     assert_has(&command(&mut board, "texture"), "texture red\r\n");
+}
+
+/// The folder of a test's scene files.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// A wireframe program that a scene file names is in the flash, and the board shows it from power-up on, as the model draws it on the host.
+/// The buttons then move it, and read it again.
+#[test]
+fn a_scene_has_its_wireframe_program_from_the_flash() {
+    const NET: &str = "eye 0 0 4\nplane 2\nwindow -2 -1.125 2 1.125\nsegment -1 0 1 1 0.5 1\nsegment 0 -1 1 0 1 4\nend\nignored\n";
+    let folder = folder("from-flash-wireframe");
+    std::fs::write(folder.join("net.wft"), NET).unwrap();
+    let binary = wireframe::parse(Form::Text, NET.into()).unwrap().bytes;
+    std::fs::write(folder.join("net.wfb"), &binary).unwrap();
+    let start = Motion::default();
+    let mut moved = start;
+    assert!(moved.apply(Key::Up.step(false)));
+    for program in ["net.wft", "net.wfb"] {
+        let file = folder.join("net.toml");
+        let text = format!(
+            "title = \"A net\"\nprogram = \"{program}\"\nsteer = \"buttons\"\nquality = \"fast\"\n"
+        );
+        let scene = SceneFile::parse("net", file.to_str().unwrap(), &text).unwrap();
+        let cubes = glint_scene_file::built_in("wireframe").unwrap();
+        let pieces = image::pieces(&[scene.clone(), cubes]).unwrap();
+        let found: Vec<_> = pieces
+            .iter()
+            .map(|piece| (piece.kind, &piece.name))
+            .collect();
+        assert_eq!(found[0], (Kind::Program, &program.to_owned()));
+        assert_eq!(pieces[0].bytes, binary);
+        let flash = image::make(&[], &[0x13; 32], &pieces).unwrap();
+        let pictures = scene::draw(&scene, &Changes::default(), |frame| {
+            let Subject::Wireframe(subject) = frame.subject else {
+                panic!("{program}: no wireframe");
+            };
+            [start, moved].map(|motion| {
+                let pose = motion.pose();
+                let subject = Subject::Wireframe(WireframeSubject { pose, ..subject });
+                let frame = Frame { subject, ..*frame };
+                on_model(&frame).unwrap().image.colour
+            })
+        });
+        let [at_start, after_up] = pictures.unwrap();
+        // Switch 3 holds the demo, so the buttons are the keys.
+        let (mut board, said) = powered_up(flash, |board| board.set_switches(1 << 3));
+        assert!(!said.contains("error"), "{said}");
+        assert!(board.capture().pixels == at_start, "{program}");
+        press(&mut board, 0);
+        board.run(PANEL);
+        assert!(board.capture().pixels == after_up, "{program}");
+        board.set_buttons(0b1100);
+        board.run(40 * MS);
+        board.set_buttons(0);
+        board.run(PANEL);
+        assert!(board.capture().pixels == at_start, "{program}");
+
+        let models = command(&mut board, "models");
+        let bytes = binary.len();
+        assert_has(
+            &models,
+            &format!("flash program {program} bytes {bytes}\r\n"),
+        );
+        let uploaded = format!("program {program} segments 2 bytes {bytes}\r\n");
+        assert_has(&models, &format!("\n{uploaded}"));
+        let answer = command(&mut board, "program n\t");
+        assert_has(&answer, &format!("program {program} \r\n"));
+        command(&mut board, &format!("unload {program}"));
+        assert!(!command(&mut board, "models").contains(&uploaded));
+        // The program is copied again at its next use.
+        for line in [format!("program {program}"), "scene net".to_owned()] {
+            command(&mut board, &line);
+            command(&mut board, "render");
+            assert!(board.capture().pixels == at_start, "{line}");
+        }
+        // The built-in scene has no program of the flash.
+        command(&mut board, "scene wireframe");
+        command(&mut board, "quality fast");
+        command(&mut board, "render");
+        assert!(board.capture().pixels != at_start);
+    }
 }
 
 /// For a scene without a camera, a board computes the same camera from the mesh in its flash as the

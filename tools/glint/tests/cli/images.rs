@@ -24,7 +24,13 @@ fn an_image_has_scenes_in_order_and_their_meshes() {
         "title = \"A gear\"\nmodel = \"gear\"\ntexture = \"a.png\"\ncamera = \"2.5 40 65\"\n";
     fs::write(folder.join("a.png"), small_png()).unwrap();
     fs::write(folder.join("gears.toml"), gears).unwrap();
-    assert!(make(&folder, "menger,gears.toml,demo").starts_with("board.bin: "));
+    succeed(&folder, "wireframe make cube --out net.wft");
+    for name in ["net", "again"] {
+        let net = "title = \"A net\"\nprogram = \"net.wft\"\n";
+        fs::write(folder.join(format!("{name}.toml")), net).unwrap();
+    }
+    let scenes = "menger,gears.toml,net.toml,again.toml,demo";
+    assert!(make(&folder, scenes).starts_with("board.bin: "));
     let valid = succeed(&folder, "image check board.bin");
     assert_eq!(valid, "board.bin: valid\n");
     let bytes = fs::read(folder.join("board.bin")).unwrap();
@@ -33,20 +39,21 @@ fn an_image_has_scenes_in_order_and_their_meshes() {
     let text = |kind, name| image.contents.find(kind, name).unwrap().text().unwrap();
     assert_eq!(
         text(Kind::List, "start"),
-        "menger\ngears\nholoforge\nwireframe\nsimplegpu\npoor-mans-vr\ncubes\n"
+        "menger\ngears\nnet\nagain\nholoforge\nwireframe\nsimplegpu\npoor-mans-vr\ncubes\n"
     );
     assert_eq!(
         text(Kind::Scene, "menger"),
         "quality balanced\ncamera 4 30 60\nfield menger:4\n"
     );
     let kinds: Vec<Kind> = image.contents.items().map(|item| item.kind).collect();
-    for kind in [Kind::Mesh, Kind::Texture] {
+    for kind in [Kind::Mesh, Kind::Texture, Kind::Program] {
         assert_eq!(kinds.iter().filter(|known| **known == kind).count(), 1);
     }
     let list = succeed(&folder, "image list board.bin");
     assert!(list.starts_with("firmware "), "{list}");
     assert_has(&list, "mesh      gear  ");
     assert_has(&list, "texture   a.png  ");
+    assert_has(&list, "program   net.wft  ");
     let checked = report(&folder, "image check board.bin");
     assert_eq!(checked, serde_json::json!(["board.bin"]));
     let parts = report(&folder, "image list board.bin");

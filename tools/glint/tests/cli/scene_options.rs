@@ -92,6 +92,105 @@ fn scenes_of_meshes_are_those_of_render() {
     failed(&folder, "render --scene inner/1.toml --out inner/a.stl", 2);
 }
 
+const NET: &str = "eye 0 0 4\nplane 2\nwindow -2 -1.125 2 1.125\nsegment -1 0 1 1 0.5 1\nend\n";
+
+/// The picture of a scene file with a wireframe program in its folder equals the picture of `glint wireframe render`, on the host and on a
+/// board.
+#[test]
+fn scenes_of_programs_are_those_of_wireframe() {
+    let folder = folder("scene-of-programs");
+    let inner = folder.join("inner");
+    std::fs::create_dir(&inner).unwrap();
+    std::fs::write(inner.join("net.wft"), format!("{NET}ignored\n")).unwrap();
+    std::fs::write(folder.join("a.wft"), NET).unwrap();
+    succeed(&folder, "wireframe convert a.wft inner/net.wfb");
+    for board in ["model", "emulated"] {
+        let render = |command: &str| {
+            let options = format!("--board {board} --aa 1 --force --out a.png");
+            let output = glint_within(800, &folder, &format!("{command} {options}"), &[]);
+            let error = String::from_utf8_lossy(&output.stderr).into_owned();
+            assert!(output.status.success(), "{command}: {error}");
+            (picture(&folder.join("a.png")), error)
+        };
+        let (expected, _) = render("wireframe render a.wft --size 320x180");
+        for (program, warning) in [
+            ("net.wft", "inner/net.wft: 1 line after the end is ignored"),
+            ("net.wfb", ""),
+        ] {
+            let text = format!("title = \"A\"\nquality = \"fast\"\nprogram = \"{program}\"\n");
+            std::fs::write(inner.join("a.toml"), text).unwrap();
+            let (found, said) = render("render --scene inner/a.toml");
+            assert!(found == expected, "{board}: {program}");
+            assert!(said.contains(warning), "{said}");
+        }
+    }
+    // The output is an input.
+    failed(
+        &folder,
+        "render --scene inner/a.toml --out inner/net.wfb",
+        2,
+    );
+}
+
+/// A scene file whose program cannot be used is refused with one line; no picture and no image is written.
+#[test]
+fn refused_programs_of_scenes() {
+    let folder = folder("scene-programs-refused");
+    std::fs::write(folder.join("firmware.bin"), [0x13; 400]).unwrap();
+    std::fs::write(folder.join("endless.wft"), NET.replace("end\n", "")).unwrap();
+    std::fs::write(folder.join("mesh.wfb"), b"GLM1 and more than a word").unwrap();
+    std::fs::write(folder.join("empty.wfb"), b"").unwrap();
+    std::fs::write(folder.join("short.wfb"), [0; 40]).unwrap();
+    let long = NET.replace("end\n", &"segment 0 0 0 0 0 0\n".repeat(65_535));
+    std::fs::write(folder.join("long.wft"), format!("{long}end\n")).unwrap();
+    std::fs::create_dir(folder.join("folder.wft")).unwrap();
+    std::os::unix::fs::symlink("/dev/zero", folder.join("device.wfb")).unwrap();
+    for (program, expected) in [
+        (
+            "missing.wft",
+            "missing.wft: expected a file to read, found No such file",
+        ),
+        (
+            "endless.wft",
+            "endless.wft: line 5: expected end, found the end of the input",
+        ),
+        (
+            "mesh.wfb",
+            "mesh.wfb: word 1: expected zeros in bits 127 to 99, found",
+        ),
+        (
+            "empty.wfb",
+            "empty.wfb: word 1: expected end, found the end of the input",
+        ),
+        (
+            "short.wfb",
+            "short.wfb: word 2: expected one eye in the program",
+        ),
+        (
+            "long.wft",
+            "long.wft: line 65539: expected at most 65535 segments",
+        ),
+        (
+            "folder.wft",
+            "folder.wft: expected a file to read, found Is a directory",
+        ),
+        ("device.wfb", "device.wfb: expected "),
+    ] {
+        let text = format!("title = \"A\"\nprogram = \"{program}\"\n");
+        std::fs::write(folder.join("a.toml"), text).unwrap();
+        for command in [
+            "scene check a.toml",
+            "render --scene a.toml --out a.png",
+            "image make --firmware firmware.bin --scene a.toml --out a.bin",
+        ] {
+            let error = refused(&folder, command);
+            assert!(error.contains(expected), "{command}: {program}: {error}");
+            assert_eq!(error.trim_end().lines().count(), 1, "{error}");
+        }
+    }
+    assert!(!folder.join("a.png").exists() && !folder.join("a.bin").exists());
+}
+
 /// Each error of a scene file is reported on its own line.
 #[test]
 fn all_errors_of_a_scene_file() {
