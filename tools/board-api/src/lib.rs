@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`mod@line`] | the serial line of a board, and direct access to its memory |
 //! | [`console`], [`transfer`] | protocols of the firmware on the line: commands, uploads, downloads |
+//! | [`mod@flash`] | protocol of the BIOS on the line: serial boot |
 //! | [`simulation`] | common parts of simulated boards, and their serial line |
 //! | [`pace`] | limits the speed of a simulated board to real time |
 //! | [`built`] | finds the files that `cargo xtask` builds |
@@ -13,6 +14,7 @@
 
 pub mod built;
 pub mod console;
+pub mod flash;
 pub mod line;
 pub mod pace;
 pub mod simulation;

@@ -21,7 +21,6 @@
 pub mod board;
 pub mod counters;
 pub mod field;
-pub mod flash;
 pub mod fuzz;
 pub mod gesture;
 pub mod image;
@@ -36,7 +35,7 @@ pub mod view;
 pub mod web;
 pub mod wireframe;
 
-pub use glint_board_api::{console, transfer};
+pub use glint_board_api::{console, flash, transfer};
 pub use glint_mesh::{
     convert, error, formats, generate, model, normals, polygons, texture, triangulate,
 };

@@ -10,8 +10,8 @@
 //! The host sends all three, in this order. Then the BIOS sends its request.
 
 use super::link::{FlashError, Link};
-use crate::board::{Board, BoardError};
 use crate::console::END_BOOT;
+use crate::line::{Board, BoardError};
 use glint_core::wire::{self, MAX_FRAME};
 
 /// Text that the BIOS sends when it is ready for a serial boot.

@@ -1,7 +1,7 @@
 //! Batches of frames with retries.
 
 use super::frame::{JUMP, LOAD, frame};
-use crate::board::{Board, BoardError};
+use crate::line::{Board, BoardError};
 
 /// Maximum number of data bytes in a frame. The protocol allows 251 bytes, but a frame with 96 data bytes has 104 bytes; together
 /// with the 14-byte answer to the request it fits into the BIOS's receive buffer of 127 bytes.

@@ -2,7 +2,7 @@
 
 use super::connect::REQUEST;
 use super::link::FlashError;
-use crate::board::Board;
+use crate::line::Board;
 
 /// Part of the last line that the BIOS prints before it starts a program.
 const LIFTOFF: &[u8] = b"Liftoff!";
