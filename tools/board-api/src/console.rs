@@ -45,7 +45,7 @@ pub enum ConsoleError {
     },
     /// The board is in its BIOS, because no program has been started.
     #[error(
-        "expected the firmware, found the prompt of the BIOS; `glint flash` loads the firmware"
+        "expected the firmware, found the prompt of the BIOS; `glint flash` loads the firmware, and so does the live page"
     )]
     Bios,
     /// A reply that does not have the expected form.

@@ -8,6 +8,9 @@ pub enum BoardError {
     /// Reading from or writing to the serial line failed.
     #[error("serial line: {0}")]
     Line(#[from] io::Error),
+    /// The user has ended the wait for the board, or the transfer.
+    #[error("stopped")]
+    Cancelled,
     /// An error of a simulated board.
     #[error(transparent)]
     Simulation(Box<dyn std::error::Error + Send + Sync>),

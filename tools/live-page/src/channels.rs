@@ -10,6 +10,7 @@ use crate::orbit::Drag;
 use glint_core::matrix::Axis;
 use glint_program_image::Places;
 use std::mem::{Discriminant, discriminant};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -23,7 +24,7 @@ pub enum Request {
     Command(String),
     /// Shows the choice with this name in a list.
     Choose(List, String),
-    /// Cancels the running command.
+    /// Cancels the running command, or the transfer.
     Interrupt,
     /// Requests the description of a command.
     Help(String),
@@ -84,6 +85,8 @@ pub struct Channels {
     choices: Mutex<Arc<Choices>>,
     /// The requested motion of the camera that the session has not executed yet.
     drag: Mutex<Option<Drag>>,
+    /// Whether a page has cancelled the transfer or the wait that the session is in.
+    is_cancelled: AtomicBool,
     /// The sender of requests to the session.
     requests: SyncSender<Request>,
 }
@@ -111,6 +114,7 @@ impl Channels {
             motion,
             choices: Mutex::default(),
             drag: Mutex::default(),
+            is_cancelled: AtomicBool::new(false),
             requests,
         };
         (channels, queue)
@@ -145,10 +149,25 @@ impl Channels {
         *self.lock_choices() = Arc::new(choices);
     }
 
+    /// Whether a page has cancelled a transfer or a wait since the last call: by [`Request::Interrupt`], or by [`Request::Start`] of
+    /// another program.
+    pub fn take_cancelled(&self) -> bool {
+        self.is_cancelled.swap(false, Ordering::Relaxed)
+    }
+
+    /// Queues a request for the session. Returns whether the queue had room.
+    fn queue(&self, request: Request) -> bool {
+        if matches!(request, Request::Interrupt | Request::Start(_)) {
+            self.is_cancelled.store(true, Ordering::Relaxed);
+        }
+        // Other errors mean that the session has ended, which happens only at the end of the
+        // program.
+        !matches!(self.requests.try_send(request), Err(TrySendError::Full(_)))
+    }
+
     /// Requests the start of a program. If the queue is full, the request is dropped.
     pub fn start(&self, program: Program) {
-        // Other errors mean that the session has ended, which happens only at the end of the program.
-        if let Err(TrySendError::Full(_)) = self.requests.try_send(Request::Start(program)) {
+        if !self.queue(Request::Start(program)) {
             self.hub
                 .notify("the board is busy: a program was dropped", true);
         }
@@ -157,9 +176,7 @@ impl Channels {
     /// Passes a request of a viewer to the session. If the queue is full, the request is dropped
     /// and the viewer receives a notice.
     pub fn request(&self, id: Id, request: Request) {
-        // Other errors mean that the session has ended, which happens only at the end of the
-        // program.
-        if let Err(TrySendError::Full(_)) = self.requests.try_send(request) {
+        if !self.queue(request) {
             self.hub
                 .notify_one(id, "the board is busy: a command was dropped");
         }

@@ -186,6 +186,11 @@ impl Hub {
         self.send(&ToPage::Notice { text, is_error });
     }
 
+    /// Tells all viewers that a transfer has ended early.
+    pub fn end_progress(&self) {
+        self.send(&ToPage::Progress { done: 0, all: 0 });
+    }
+
     /// Sends a message to one viewer.
     pub fn send_one(&self, id: Id, message: &ToPage) {
         if let Some(queue) = self.lock().viewers.get_mut(&id) {

@@ -14,7 +14,8 @@ use std::time::Duration;
 /// Time for which the board runs without interruption, in ms of the board's time.
 const SLICE_MS: u64 = 1;
 
-/// A board for the live page. The board runs during a read from its line, at most at real-time speed.
+/// A board for the live page. A simulated board runs during a read from its line, at most at real-time speed. The default functions are
+/// those of a board on a serial port: the host has no access to its memory, pins and monitor.
 pub trait Live: Board {
     /// The motion sensor and the hand that the page moves; `None` for a board without access to its pins.
     fn motion(&self) -> Option<Arc<Motion>> {
@@ -34,12 +35,12 @@ pub trait Live: Board {
         Ok(None)
     }
 
-    /// Replaces the program by a memory image, and starts it.
+    /// Replaces the program by a memory image, and starts it. A board without direct access to its memory is loaded by its BIOS instead.
     ///
     /// # Errors
-    /// The image exceeds main memory, or this board takes no program from the page.
+    /// The image exceeds main memory, or this board has no direct access to its memory.
     fn boot(&mut self, _program: &[u8], _places: Places) -> Result<(), BoardError> {
-        let error = "a board on a serial port takes a program from `glint flash FILE --board PORT`";
+        let error = "expected a simulated board, found one with a serial line only";
         Err(BoardError::simulation(error))
     }
 
@@ -49,11 +50,15 @@ pub trait Live: Board {
         None
     }
 
-    /// Interval of the measurements on the console.
-    fn sample_period(&self) -> Duration;
+    /// Interval of the measurements on the console. A serial line is slow, so by default it is long.
+    fn sample_period(&self) -> Duration {
+        Duration::from_secs(2)
+    }
 
-    /// The time of the clock that limits the board to real time.
-    fn clock(&self) -> Duration;
+    /// The time of the clock that limits the board to real time; by default the board's time.
+    fn clock(&self) -> Duration {
+        Duration::from_millis(self.now_ms())
+    }
 
     /// Time by which the board is ahead of its clock. The caller waits for this time if the clock
     /// cannot wait.

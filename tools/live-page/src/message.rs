@@ -120,7 +120,7 @@ pub enum ToPage {
         /// The words that can replace its last word.
         words: Vec<String>,
     },
-    /// Progress of a transfer in bytes.
+    /// Progress of a transfer in bytes; `done` equals `all` at the end, and both are 0 if the transfer has failed.
     Progress {
         /// Bytes transferred so far.
         done: u64,

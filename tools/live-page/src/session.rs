@@ -3,17 +3,18 @@
 use crate::channels::{Channels, MAX_REQUESTS, Program, Request, Upload};
 use crate::choices::{Choices, List};
 use crate::hub::Hub;
-use crate::inputs::Inputs;
 use crate::live::Live;
 use crate::message::{Entry, Pins, ToPage};
 use crate::orbit::{self, Drag};
 use glint_board_api::console::{self, Console, ConsoleError};
+use glint_board_api::flash::{self, FlashError};
 use glint_board_api::transfer::{self, MODEL, TransferError};
 use glint_board_api::{Board, BoardError, Frame, Memory, read_in_steps};
 use glint_core::camera::View;
 use glint_core::console::{Command, PROMPT, Setting};
 use glint_core::matrix::Axis;
 use glint_core::picture::Size;
+use glint_program_image::START_ADDRESS;
 use serde_json::Value;
 use std::collections::VecDeque;
 use std::io;
@@ -31,6 +32,19 @@ const INTERRUPT: &[u8] = b"\x03";
 /// without a prompt.
 const FIRST_PATIENCE_MS: u64 = 1_000;
 
+/// Time-out of the first prompt of a program that a board's BIOS has loaded, in ms of the board's time.
+const LOADED_PATIENCE_MS: u64 = 10_000;
+
+/// Longest wait for the BIOS's request for a serial boot, in ms of the board's time.
+const BIOS_PATIENCE_MS: u64 = 60_000;
+
+/// Advice for a board on a serial line that does not answer.
+const NO_ANSWER: &str =
+    "press the board's reset button, or drop a program, which the board's BIOS loads";
+
+/// Notice about a transfer or a wait that a page has cancelled.
+const STOPPED: &str = "stopped";
+
 /// Note on a program without a prompt.
 const NO_PROMPT: &str =
     "The program has no prompt, so the page has no lists of scenes, meshes and fields for it.";
@@ -44,10 +58,11 @@ const REPORTS: u64 = 100;
 /// A board whose picture and pin levels are sent to the pages while the serial line is read.
 struct Watched<'a> {
     board: &'a mut dyn Live,
-    hub: &'a Hub,
-    inputs: &'a Inputs,
+    channels: &'a Channels,
     stop: &'a AtomicBool,
     pins: Option<Pins>,
+    /// Whether the pages may cancel what the session does now.
+    may_cancel: bool,
 }
 
 impl Watched<'_> {
@@ -56,15 +71,25 @@ impl Watched<'_> {
         if self.stop.load(Ordering::Relaxed) {
             return Err(io::Error::from(io::ErrorKind::Interrupted).into());
         }
-        let pins = self.board.pins(self.inputs.take());
+        if self.may_cancel && self.channels.take_cancelled() {
+            return Err(BoardError::Cancelled);
+        }
+        let hub = &self.channels.hub;
+        let pins = self.board.pins(self.channels.inputs.take());
         if pins != self.pins {
             self.pins = pins;
-            pins.into_iter().for_each(|pins| self.hub.send_pins(pins));
+            pins.into_iter().for_each(|pins| hub.send_pins(pins));
         }
         if let Some(frame) = self.board.picture()? {
-            self.hub.show(&frame);
+            hub.show(&frame);
         }
         Ok(())
+    }
+
+    /// Sets whether the pages may cancel what follows. An earlier cancellation is dropped.
+    fn set_may_cancel(&mut self, may_cancel: bool) {
+        self.channels.take_cancelled();
+        self.may_cancel = may_cancel;
     }
 }
 
@@ -113,7 +138,7 @@ pub fn run(
 
 /// The wait for the first prompt of a program that has just started.
 struct Meeting {
-    /// End of the wait, in ms of the board's time.
+    /// End of the wait, in ms of the board's time; `u64::MAX` for a board that may be reset by hand at any time.
     end_ms: u64,
     /// Text for the pages; empty for the first program.
     started: String,
@@ -167,10 +192,10 @@ impl<'a> Session<'a> {
             sampled: board.clock(),
             board: Watched {
                 board,
-                hub: &channels.hub,
-                inputs: &channels.inputs,
+                channels,
                 stop,
                 pins: None,
+                may_cancel: false,
             },
             hub: &channels.hub,
             requests,
@@ -185,23 +210,41 @@ impl<'a> Session<'a> {
             meeting: None,
             end: Vec::new(),
         };
-        session.meet(String::new())?;
+        // A simulated board has just started, and its program may have no prompt, so nothing is sent to it.
+        if session.board.memory().is_some() {
+            session.await_prompt(String::new(), FIRST_PATIENCE_MS);
+        } else {
+            session.find_firmware()?;
+        }
         Ok(session)
     }
 
-    /// Starts to detect whether the running program has a prompt. On a simulated board, which has just started, the session only waits: it
-    /// sends nothing, because the program may have no prompt. `started` is the text for the pages, empty for the first program.
-    fn meet(&mut self, started: String) -> Result<(), BoardError> {
+    /// Starts to wait for the first prompt of a program that has just started. `started` is the text for the pages, empty for the first
+    /// program.
+    fn await_prompt(&mut self, started: String, wait_ms: u64) {
         self.has_prompt = false;
-        if self.board.memory().is_some() {
-            let end_ms = self.board.now_ms() + FIRST_PATIENCE_MS;
-            self.meeting = Some(Meeting { end_ms, started });
-            return Ok(());
-        }
-        self.has_prompt = self.try_ask(|console, _| Ok(console.synchronise()?))?;
+        let end_ms = self.board.now_ms().saturating_add(wait_ms);
+        self.meeting = Some(Meeting { end_ms, started });
+    }
+
+    /// Finds the prompt of the firmware of a board on a serial line, which may have run for a long time. A board without an answer may
+    /// have one after its reset.
+    fn find_firmware(&mut self) -> Result<(), BoardError> {
+        let mut failure = None;
+        self.has_prompt = self.ask_until_cancelled(|console, _| {
+            let result = console.synchronise();
+            if let Err(error @ ConsoleError::Silence { .. }) = &result {
+                failure = Some(format!("{error}; {NO_ANSWER}"));
+            }
+            Ok(result?)
+        })?;
         if self.has_prompt {
-            self.update_lists()?;
+            return self.update_lists();
         }
+        if let Some(failure) = failure {
+            self.hub.notify(failure, true);
+        }
+        self.await_prompt(String::new(), u64::MAX);
         Ok(())
     }
 
@@ -232,17 +275,60 @@ impl<'a> Session<'a> {
             image,
             places,
         } = program;
+        let started = format!("{name} runs, {} bytes.", image.len());
+        if self.board.memory().is_none() {
+            return self.load(&name, &image, started);
+        }
         if let Err(error) = self.board.board.boot(&image, places) {
             self.hub.notify(format!("{name}: {error}"), true);
             return Ok(());
         }
+        self.forget_program();
+        self.await_prompt(started, FIRST_PATIENCE_MS);
+        Ok(())
+    }
+
+    /// Drops everything that belongs to the running program.
+    fn forget_program(&mut self) {
         self.waiting.clear();
         self.frames.clear();
         self.orbit = None;
         self.end.clear();
         self.send_lists(Vec::new(), Choices::default());
-        let size = image.len();
-        self.meet(format!("{name} runs, {size} bytes."))
+    }
+
+    /// Loads a program by the BIOS of a board on a serial line, and starts it. The pages are told if this fails; the board is then in its
+    /// BIOS, or runs its earlier program. `started` is the text for the pages after the first prompt.
+    fn load(&mut self, name: &str, image: &[u8], started: String) -> Result<(), BoardError> {
+        self.forget_program();
+        self.await_prompt(String::new(), u64::MAX);
+        let wait = format!(
+            "{name}: waiting for the board's BIOS; if this takes long, press the board's reset button"
+        );
+        self.hub.notify(wait, false);
+        self.board.set_may_cancel(true);
+        let mut report = reporter(self.hub);
+        let result = flash::flash(
+            &mut self.board,
+            image,
+            START_ADDRESS,
+            BIOS_PATIENCE_MS,
+            &mut report,
+        );
+        self.board.set_may_cancel(false);
+        let error = match result {
+            Ok(mut report) => {
+                self.await_prompt(started, LOADED_PATIENCE_MS);
+                return self.pass(&mut report.said);
+            }
+            Err(FlashError::Board(BoardError::Cancelled)) => STOPPED.to_owned(),
+            Err(FlashError::Board(error)) => return Err(error),
+            Err(error) => error.to_string(),
+        };
+        Console::new(&mut self.board).end_boot()?;
+        self.hub.end_progress();
+        self.hub.notify(format!("{name}: {error}"), true);
+        Ok(())
     }
 
     /// Time by which the board is ahead of its clock, for a clock that cannot wait.
@@ -287,10 +373,10 @@ impl<'a> Session<'a> {
                 self.uploads = self.uploads.wrapping_add(1);
                 let session = self.uploads;
                 self.up = file.up.unwrap_or(self.up);
-                self.ask(|console, hub| upload(console, hub, &file, session))?;
+                self.ask_until_cancelled(|console, hub| upload(console, hub, &file, session))?;
                 self.update_lists()
             }
-            Some(Request::Picture) => self.ask(send_picture),
+            Some(Request::Picture) => self.ask_until_cancelled(send_picture).map(drop),
             Some(Request::Interrupt) => Ok(()),
             Some(Request::Start(program)) => self.start_program(program),
             None => self.use_rest(),
@@ -470,6 +556,31 @@ impl<'a> Session<'a> {
                 Ok(false)
             }
         }
+    }
+
+    /// Runs a task like [`try_ask`](Self::try_ask), until a page cancels it.
+    fn ask_until_cancelled(
+        &mut self,
+        task: impl FnOnce(&mut Console<Watched>, &Hub) -> Result<(), TransferError>,
+    ) -> Result<bool, BoardError> {
+        self.board.set_may_cancel(true);
+        let result = self.try_ask(task);
+        self.board.set_may_cancel(false);
+        let has_succeeded = match result {
+            Err(BoardError::Cancelled) => {
+                self.hub.notify(STOPPED, true);
+                // The board ends the transfer, and the rest of the reply is dropped.
+                if self.has_prompt {
+                    self.ask(|console, _| Ok(console.synchronise()?))?;
+                }
+                false
+            }
+            result => result?,
+        };
+        if !has_succeeded {
+            self.hub.end_progress();
+        }
+        Ok(has_succeeded)
     }
 
     /// Reads the firmware's lists, and sends them to the pages.

@@ -17,6 +17,9 @@ pub use place::Places;
 /// First bytes of an ELF file.
 pub const MAGIC: [u8; 4] = *b"\x7fELF";
 
+/// Address at which the BIOS loads and starts a memory image.
+pub const START_ADDRESS: u32 = MAIN_RAM.base;
+
 /// Number of bytes at the start of a file that decide whether it is a text.
 const START: usize = 256;
 

@@ -97,7 +97,8 @@ impl BoardArguments {
         let watched = watched.map(Watched::new);
         let server = Server::bind(address).with_context(|| format!("--web {address}"))?;
         let mut board: Box<dyn Live> = match &self.board {
-            BoardName::Serial(port) => Box::new(self.line.serial_board(port)?),
+            // The page finds the board's firmware, or loads it.
+            BoardName::Serial(port) => Box::new(self.line.open(port)?),
             simulated => {
                 let period = match simulated {
                     BoardName::Virtual => Duration::from_secs(2),

@@ -122,8 +122,11 @@ impl LineArguments {
         Ok(board)
     }
 
-    /// Opens a serial port.
-    fn open(&self, port: &str) -> anyhow::Result<SerialBoard> {
+    /// Opens a serial port. The firmware of its board may not be running yet.
+    ///
+    /// # Errors
+    /// The options do not apply to a serial port, or it cannot be opened.
+    pub fn open(&self, port: &str) -> anyhow::Result<SerialBoard> {
         self.check(&BoardName::Serial(port.to_owned()))?;
         Ok(SerialBoard::open(port, self.baud.rate()?)?)
     }

@@ -4,8 +4,11 @@ use crate::served::{Served, wait_for};
 use glint::board::{self, built_firmware};
 use glint::console::Console;
 use glint::transfer::download;
+use glint_board_api::built;
 use glint_core::picture::Size;
-use tungstenite::Message;
+use serde_json::json;
+use std::net::TcpStream;
+use tungstenite::{Message, WebSocket};
 
 /// Makes the start scene small.
 const COMMAND: &str = "quality fast";
@@ -40,4 +43,41 @@ fn the_picture_of_a_board_on_a_serial_port_is_fetched() {
     let (head, colours) = picture.split_at(8);
     assert_eq!(head, [64, 1, 180, 0, 1, 0, 0, 0], "320x180, the first one");
     assert!(colours == expected(), "the colours are those of the board");
+}
+
+/// Drops a file on the page.
+fn drop_file(socket: &mut WebSocket<TcpStream>, name: &str, bytes: &[u8]) {
+    let head = json!({ "type": "upload", "name": name, "bytes": bytes.len() });
+    socket.send(Message::text(head.to_string())).unwrap();
+    for part in bytes.chunks(64 << 10) {
+        socket.send(Message::binary(part.to_vec())).unwrap();
+    }
+}
+
+/// A board in its BIOS takes the firmware from the page, then a mesh, then a program without a prompt in place of the firmware. That
+/// program does not answer the host, so the wait for the BIOS is stopped.
+#[test]
+fn a_board_in_its_bios_is_loaded_from_the_page() {
+    let port = Served::start_with("page-bios", &["--bios"]);
+    let served = Served::start_with("page-loaded", &["--web", "--board", &port.url]);
+    let mut socket = served.viewer();
+    wait_for(&mut socket, "found the prompt of the BIOS");
+    drop_file(&mut socket, "glint.bin", &built_firmware(None).unwrap());
+    wait_for(&mut socket, r#""type":"progress""#);
+    wait_for(&mut socket, "glint.bin runs, ");
+    drop_file(
+        &mut socket,
+        "a.obj",
+        b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+    );
+    wait_for(&mut socket, "the model is shown");
+    let kernel = built::find("firmware/programs/kernel.bin", "cargo xtask programs").unwrap();
+    let kernel = std::fs::read(kernel).unwrap();
+    drop_file(&mut socket, "kernel.bin", &kernel);
+    wait_for(&mut socket, "newton: ");
+    drop_file(&mut socket, "kernel.bin", &kernel);
+    wait_for(&mut socket, "waiting for the board's BIOS");
+    let stop = r#"{"type":"interrupt"}"#;
+    socket.send(Message::text(stop)).unwrap();
+    wait_for(&mut socket, "kernel.bin: stopped");
 }
