@@ -32,9 +32,6 @@ const INTERRUPT: &[u8] = b"\x03";
 /// without a prompt.
 const FIRST_PATIENCE_MS: u64 = 1_000;
 
-/// Time-out of the first prompt of a program that a board's BIOS has loaded, in ms of the board's time.
-const LOADED_PATIENCE_MS: u64 = 10_000;
-
 /// Longest wait for the BIOS's request for a serial boot, in ms of the board's time.
 const BIOS_PATIENCE_MS: u64 = 60_000;
 
@@ -230,6 +227,7 @@ impl<'a> Session<'a> {
     /// Finds the prompt of the firmware of a board on a serial line, which may have run for a long time. A board without an answer may
     /// have one after its reset.
     fn find_firmware(&mut self) -> Result<(), BoardError> {
+        self.send_lists(Vec::new(), Choices::default());
         let mut failure = None;
         self.has_prompt = self.ask_until_cancelled(|console, _| {
             let result = console.synchronise();
@@ -298,7 +296,7 @@ impl<'a> Session<'a> {
     }
 
     /// Loads a program by the BIOS of a board on a serial line, and starts it. The pages are told if this fails; the board is then in its
-    /// BIOS, or runs its earlier program. `started` is the text for the pages after the first prompt.
+    /// BIOS, or runs its earlier program. `started` is the text for the pages if it succeeds.
     fn load(&mut self, name: &str, image: &[u8], started: String) -> Result<(), BoardError> {
         self.forget_program();
         self.await_prompt(String::new(), u64::MAX);
@@ -308,17 +306,25 @@ impl<'a> Session<'a> {
         self.hub.notify(wait, false);
         self.board.set_may_cancel(true);
         let mut report = reporter(self.hub);
+        let mut is_waiting = true;
         let result = flash::flash(
             &mut self.board,
             image,
             START_ADDRESS,
             BIOS_PATIENCE_MS,
-            &mut report,
+            &mut |done, all| {
+                // A reset would now end the transfer.
+                if std::mem::take(&mut is_waiting) {
+                    let text = format!("{name}: the board receives {all} bytes");
+                    self.hub.notify(text, false);
+                }
+                report(done, all);
+            },
         );
         self.board.set_may_cancel(false);
         let error = match result {
             Ok(mut report) => {
-                self.await_prompt(started, LOADED_PATIENCE_MS);
+                self.hub.notify(started, false);
                 return self.pass(&mut report.said);
             }
             Err(FlashError::Board(BoardError::Cancelled)) => STOPPED.to_owned(),
