@@ -213,8 +213,9 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
     }
 
     fn find_firmware(&mut self) -> Result<(), ConsoleError> {
-        // Each `RandomState` has random keys, so the number differs from the numbers that earlier programs have sent.
-        let number = RandomState::new().hash_one(0);
+        // Each `RandomState` has random keys, so the number differs from the numbers that earlier programs have sent. In WebAssembly the keys
+        // are constant, and the time differs.
+        let number = RandomState::new().hash_one(self.board.now_ms());
         self.allowance = MAX_REPLY;
         let patience_ms = self.patience_ms;
         let (mut attempt, mut silences) = (1, 0);
