@@ -1,27 +1,54 @@
-// The link to the board: a worker of this page, in which the board runs.
+// The link to the board: a worker of this page, in which the board runs, or which talks to a board on a serial port.
+import { startSerial } from "./serial.js";
 
 // The message to the worker after the page has taken the worker's last messages.
 export const IS_TAKEN = null;
 
-// Calls `opened`, `received` with each message, and `closed` with a text for the user. Returns a function that sends a message: a text,
-// or bytes.
-export function startLink({ opened, received, closed }) {
+// Calls `opened` at the start of a board, `received` with each message, `closed` with a text for the user, and `notify` with an error that
+// leaves the board as it is. Returns a function that sends a message: a text, or bytes.
+export function startLink(page) {
+  let board = startBoard(page, {});
+  startSerial({
+    connected(line, name) {
+      board.end();
+      board = startBoard(page, { line, name });
+    },
+    disconnected() {
+      board.end();
+      board = startBoard(page, {});
+    },
+    lost(text) {
+      board.end();
+      page.closed(text);
+    },
+    notify: page.notify,
+  });
+  return (data) => board.send(data);
+}
+
+// Starts a worker. With a `line`, a channel of bytes, its board is on the serial port with this `name`.
+function startBoard({ opened, received, closed }, { line, name }) {
   const worker = new Worker(new URL("worker.js", import.meta.url), { type: "module" });
   let hasEnded = false;
-  const end = (reason) => {
+  const end = () => {
+    hasEnded = true;
+    worker.terminate();
+  };
+  const stop = (reason) => {
     // The worker may fail after it has sent the reason for the end; only the first text is passed
     // on.
     if (hasEnded) return;
-    hasEnded = true;
-    worker.terminate();
+    end();
     closed(`The board has stopped: ${reason}. Load the page again to start it.`);
   };
   worker.addEventListener("message", ({ data: { messages, end: reason } }) => {
-    if (reason !== undefined) return end(reason);
+    if (hasEnded) return;
+    if (reason !== undefined) return stop(reason);
     messages.forEach(received);
     worker.postMessage(IS_TAKEN);
   });
-  worker.addEventListener("error", (event) => end(event.message ?? "the worker cannot be loaded"));
+  worker.addEventListener("error", (event) => stop(event.message ?? "the worker cannot be loaded"));
+  worker.postMessage({ line, name }, line ? [line] : []);
   opened();
-  return (data) => worker.postMessage(data);
+  return { send: (data) => worker.postMessage(data), end };
 }

@@ -1,5 +1,10 @@
-// The board in a worker: loads it, passes messages between it and the page, and runs it while it is behind the clock.
+// The board in a worker: loads its code, passes messages between it and the page, and runs it while it is behind the clock. The board is
+// emulated, or is on a serial port.
 import { IS_TAKEN } from "./link.js";
+import { portFunctions } from "./port.js";
+
+// The first message of the page. The listener is added before the first wait, so that it misses no message.
+const started = new Promise((done) => addEventListener("message", ({ data }) => done(data), { once: true }));
 
 // Kinds of messages that the board delivers, as in src/lib.rs.
 const TEXT = 0;
@@ -10,8 +15,10 @@ let messages = [];
 // Whether the page has taken the last messages. Until then, a newer picture replaces an older one.
 let isTaken = true;
 
+const memoryOf = () => new Uint8Array(board.memory.buffer);
+
 function deliver(kind, start, length) {
-  const bytes = new Uint8Array(board.memory.buffer, start, length);
+  const bytes = memoryOf().subarray(start, start + length);
   if (kind === PICTURE) messages.push(bytes.slice().buffer);
   else if (kind === TEXT) messages.push(new TextDecoder().decode(bytes));
   else if (kind === END) end(new TextDecoder().decode(bytes));
@@ -30,14 +37,47 @@ async function load(name) {
 
 function put(bytes) {
   const start = board.inbox(bytes.length);
-  new Uint8Array(board.memory.buffer, start, bytes.length).set(bytes);
+  memoryOf().set(bytes, start);
 }
 
-const [code, firmware] = await Promise.all(["board.wasm", "firmware.bin"].map(load));
-const { instance } = await WebAssembly.instantiate(code, { env: { now: () => performance.now(), deliver } });
-const board = instance.exports;
-put(new Uint8Array(firmware));
-board.start();
+// Passes the board's messages to the page, if the page has taken the last ones.
+function pass() {
+  if (!isTaken) return;
+  board.take();
+  if (messages.length === 0) return;
+  isTaken = false;
+  postMessage({ messages }, messages.filter((message) => typeof message !== "string"));
+  messages = [];
+}
+
+const now = () => performance.timeOrigin + performance.now();
+
+// Starts an emulated board with its firmware.
+async function startEmulated() {
+  const [code, firmware] = await Promise.all(["board.wasm", "firmware.bin"].map(load));
+  // The code has these functions for a board on a serial port only.
+  const unused = { write_port() {}, read_port: () => 0 };
+  const { instance } = await WebAssembly.instantiate(code, { env: { now, deliver, ...unused } });
+  board = instance.exports;
+  put(new Uint8Array(firmware));
+  board.start();
+  return board.run;
+}
+
+// Starts the session with a board on a serial port. The session waits for the port's bytes; WebAssembly suspends it meanwhile.
+async function startPort(line, name) {
+  const { write_port, read_port } = portFunctions(line, memoryOf, pass);
+  const suspending = { write_port: new WebAssembly.Suspending(write_port), read_port: new WebAssembly.Suspending(read_port) };
+  const { instance } = await WebAssembly.instantiate(await load("board.wasm"), { env: { now, deliver, ...suspending } });
+  board = instance.exports;
+  put(new TextEncoder().encode(name));
+  await WebAssembly.promising(board.connect)();
+  return WebAssembly.promising(board.run);
+}
+
+// The exports of the board's code.
+let board;
+const { line, name } = await started;
 
 addEventListener("message", ({ data }) => {
   if (data === IS_TAKEN) {
@@ -54,20 +94,21 @@ addEventListener("message", ({ data }) => {
 // The worker sends itself a message to start the next turn. Unlike a timer, the message has no
 // minimum delay, and it is handled after the queued messages of the page.
 const next = new MessageChannel();
-next.port1.onmessage = turn;
 
-function turn() {
-  const early = board.run();
-  if (isTaken) {
-    board.take();
-    if (messages.length > 0) {
-      isTaken = false;
-      postMessage({ messages }, messages.filter((message) => typeof message !== "string"));
-      messages = [];
-    }
-  }
-  if (early > 0) setTimeout(turn, early);
-  else next.port2.postMessage(null);
+try {
+  const run = await (line ? startPort(line, name) : startEmulated());
+  const turn = async () => {
+    const early = await run();
+    pass();
+    if (early > 0) setTimeout(() => turn().catch(fail), early);
+    else next.port2.postMessage(null);
+  };
+  next.port1.onmessage = () => turn().catch(fail);
+  next.port2.postMessage(null);
+} catch (error) {
+  fail(error);
 }
 
-turn();
+function fail({ message }) {
+  end(message);
+}

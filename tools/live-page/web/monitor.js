@@ -38,6 +38,11 @@ export function showPicture(data) {
   times.push(performance.now());
 }
 
+// Clears the picture of an earlier board.
+export function clearPicture() {
+  context.clearRect(0, 0, canvas.width, canvas.height);
+}
+
 function showRate() {
   const start = performance.now() - 1000;
   times = times.filter((time) => time > start);

@@ -1,6 +1,6 @@
 // The page: passes messages between its parts and the board. docs/live-page.md describes the messages.
 import { startLink } from "./link.js";
-import { showPicture } from "./monitor.js";
+import { clearPicture, showPicture } from "./monitor.js";
 import { startConsole } from "./console.js";
 import { startPanel } from "./panel.js";
 import { startMotion } from "./motion.js";
@@ -146,6 +146,7 @@ sendData = startLink({
   opened() {
     notify("");
     console_.clear();
+    clearPicture();
   },
   received(data) {
     if (typeof data !== "string") return showPicture(data);
@@ -156,4 +157,5 @@ sendData = startLink({
     setHolder("nobody");
     notify(text);
   },
+  notify,
 });

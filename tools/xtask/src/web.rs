@@ -46,6 +46,9 @@ pub fn build(out: Option<&Path>) -> Result<()> {
                 "emulated-board-wasm",
                 "--profile",
                 PROFILE,
+                // The example is the board of the page's tests.
+                "--lib",
+                "--examples",
             ])
             .args(["--target", WEB_TARGET])
             .current_dir(paths::root()),

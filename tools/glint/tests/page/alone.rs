@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
 /// The output folder of `cargo xtask web`.
-const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../target/web");
+pub const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../target/web");
 
 /// Python's web server for files, which serves the page.
 pub struct Files {
@@ -25,7 +25,8 @@ impl Files {
         Self::of(Path::new(FOLDER))
     }
 
-    fn of(folder: &Path) -> Self {
+    /// Starts the web server for the files of a folder.
+    pub fn of(folder: &Path) -> Self {
         let mut child = Command::new("python3")
             .args(["-u", "-m", "http.server", "0", "--bind", "127.0.0.1"])
             .arg("--directory")

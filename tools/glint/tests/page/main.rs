@@ -5,6 +5,7 @@ mod alone;
 mod browser;
 mod busy;
 mod buttons;
+mod connected;
 mod controls;
 mod page;
 mod programs;

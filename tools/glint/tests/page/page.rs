@@ -20,7 +20,11 @@ const CANVAS: &str = "(() => { const canvas = document.getElementById('monitor')
 const CAMERA: &str = "camera 2.5 -30 75";
 
 /// Waits until the picture in the page is bit-identical to the picture on a board's monitor.
-fn wait_for_picture(browser: &mut Browser, page: &Page, board: &mut SimulatedBoard<EmulatedBoard>) {
+pub fn wait_for_picture(
+    browser: &mut Browser,
+    page: &Page,
+    board: &mut SimulatedBoard<EmulatedBoard>,
+) {
     let frame = board.inner().capture().pixels;
     let widened = frame.iter().flat_map(|&colour| {
         let [r, g, b] = [colour >> 11, colour >> 5 & 63, colour & 31];
