@@ -116,6 +116,8 @@ pub struct Console<'b, B: ?Sized = dyn Board> {
     board: &'b mut B,
     /// Received bytes that are not processed yet.
     pending: Vec<u8>,
+    /// Output before the echoes of commands that [`take_earlier`](Self::take_earlier) has not returned yet.
+    earlier: String,
     patience_ms: u64,
     /// Deadline of the current line.
     line: Limit,
@@ -131,6 +133,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         Self {
             board,
             pending: Vec::new(),
+            earlier: String::new(),
             patience_ms: PATIENCE_MS,
             line: Limit::NONE,
             reply: Limit::NONE,
@@ -402,6 +405,12 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         Ok(lines)
     }
 
+    /// Returns the output of earlier commands, such as of a line that a user has typed ahead, that has arrived before the echoes of the
+    /// commands of this console. It ends with the prompt, unless it is empty.
+    pub fn take_earlier(&mut self) -> String {
+        std::mem::take(&mut self.earlier)
+    }
+
     /// Sends a command and waits for its echo.
     ///
     /// # Errors
@@ -412,10 +421,16 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         self.board.write(format!("\0{command}\r").as_bytes())?;
         self.begin_line(self.patience_ms);
         loop {
+            let line = self.next_line(command)?;
             // The line with the echo may start with earlier output, such as the prompt.
-            if self.next_line(command)?.ends_with(command) {
+            if let Some(prompt) = line.strip_suffix(command) {
+                if !self.earlier.is_empty() {
+                    self.earlier.push_str(prompt);
+                }
                 return Ok(());
             }
+            self.earlier.push_str(&line);
+            self.earlier.push_str("\r\n");
         }
     }
 

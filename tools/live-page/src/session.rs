@@ -549,8 +549,13 @@ impl<'a> Session<'a> {
     ) -> Result<bool, BoardError> {
         let mut console = Console::new(&mut self.board);
         let result = task(&mut console, self.hub).and_then(|()| Ok(console.greet().map(drop)?));
-        // A line that the firmware prints before its prompt belongs to the output for the viewers.
+        // Replies to lines that were typed ahead, and a line that the firmware prints before its prompt, belong to the output for the
+        // viewers.
+        let earlier = console.take_earlier();
         let mut rest = std::mem::take(console.line().1);
+        if !earlier.is_empty() {
+            self.hub.send_console(earlier.as_bytes());
+        }
         self.end.clear();
         self.pass(&mut rest)?;
         match result {

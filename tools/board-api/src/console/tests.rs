@@ -64,6 +64,8 @@ fn replies() {
         refused,
         "the board refused `leds x`: leds `x`: expected a number"
     );
+    assert_eq!(console.take_earlier(), "glint> noise\r\nglint> ");
+    assert_eq!(console.take_earlier(), "");
     let mut start = || console.command_with_transfer("load 1 2", &mut |_| {});
     assert!(start().is_ok());
     assert_eq!(
