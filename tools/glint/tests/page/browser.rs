@@ -109,11 +109,18 @@ impl Browser {
 
     /// Opens a page at an address.
     pub fn open(&mut self, url: &str) -> Page {
+        self.open_with(url, "")
+    }
+
+    /// Opens a page at an address, in a browser that a script has changed before the page's own scripts run.
+    pub fn open_with(&mut self, url: &str, script: &str) -> Page {
         let target = self.call(None, "Target.createTarget", json!({ "url": "about:blank" }));
         let attach = json!({ "targetId": target["targetId"], "flatten": true });
         let session = self.call(None, "Target.attachToTarget", attach);
         let page = Page(session["sessionId"].as_str().unwrap().to_owned());
         self.call(Some(&page), "Page.enable", json!({}));
+        let script = json!({ "source": script });
+        self.call(Some(&page), "Page.addScriptToEvaluateOnNewDocument", script);
         let loads = self.loads;
         self.call(Some(&page), "Page.navigate", json!({ "url": url }));
         while self.loads == loads {

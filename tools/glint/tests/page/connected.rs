@@ -90,6 +90,16 @@ fn other() -> SimulatedBoard<EmulatedBoard> {
     board
 }
 
+#[test]
+fn a_browser_that_cannot_wait_for_a_port_is_told() {
+    let files = Files::start();
+    let mut browser = Browser::start();
+    let page = browser.open_with(&files.url, "delete WebAssembly.Suspending");
+    browser.wait(&page, "document.body.dataset.holder === 'you'");
+    browser.wait(&page, "!document.getElementById('no-serial').hidden");
+    browser.wait(&page, &format!("{BUTTON}.hidden"));
+}
+
 /// With the environment variable `GLINT_UPDATE`, replaces the screenshot in the documentation.
 #[test]
 fn a_board_on_a_port_of_the_browser_is_loaded_and_used() {
@@ -145,6 +155,15 @@ fn a_board_on_a_port_of_the_browser_is_loaded_and_used() {
         &page,
         "document.querySelectorAll('#scenes button').length > 10",
     );
+    // The upload is in progress when it is stopped, because the port accepts only its start.
+    let start = "port.accept(20_000)";
+    change(&mut browser, &page, start);
+    drop_files(&mut browser, &page, &[(FILE, mesh())]);
+    browser.wait(&page, "!document.getElementById('progress').hidden");
+    browser.evaluate(&page, "document.getElementById('interrupt').click()");
+    change(&mut browser, &page, "port.accept(Infinity)");
+    browser.wait(&page, &format!("{NOTICE} === 'stopped'"));
+    browser.wait(&page, "document.getElementById('progress').hidden");
     drop_files(&mut browser, &page, &[(FILE, mesh())]);
     browser.wait(&page, &format!("{NOTICE}.startsWith('the model is shown')"));
     command(&mut browser, &page, "quality fast");

@@ -14,6 +14,9 @@ class Port {
     this.board = board;
     // Whether another program has the port open.
     this.isTaken = false;
+    // Number of bytes that the port still accepts.
+    this.room = Infinity;
+    this.hasRoom = () => {};
     // The streams of an open port.
     [this.readable, this.writable] = [null, null];
     this.last = performance.now();
@@ -42,7 +45,9 @@ class Port {
     if (baudRate !== 115200) throw new DOMException(`rate ${baudRate}`, "NotSupportedError");
     this.readable = new ReadableStream({ start: (received) => (this.received = received) });
     this.writable = new WritableStream({
-      write: (bytes) => {
+      write: async (bytes) => {
+        while (this.room <= 0) await new Promise((done) => (this.hasRoom = done));
+        this.room -= bytes.length;
         this.bytes(this.board.buffer(bytes.length), bytes.length).set(bytes);
         this.board.send();
       },
@@ -53,6 +58,12 @@ class Port {
     if (this.readable?.locked || this.writable?.locked) throw new TypeError("the streams are locked");
     this.received = undefined;
     [this.readable, this.writable] = [null, null];
+  }
+
+  // Sets the number of bytes that the port accepts from now on.
+  accept(room) {
+    this.room = room;
+    this.hasRoom();
   }
 
   // Ends the connection as the loss of a USB cable does.
