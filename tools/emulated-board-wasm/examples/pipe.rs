@@ -1,8 +1,8 @@
-//! An emulated board in its BIOS with nothing but its serial line, as WebAssembly: the board at the other end of a port in tests of the page
+//! An emulated board in its BIOS with its serial line and its switches, as WebAssembly: the board at the other end of a port in tests of the page
 //! (`tools/glint/tests/page/pipe.js`).
 
 use emulated_board::EmulatedBoard;
-use glint_board_api::Uart;
+use glint_board_api::{Simulation, Uart};
 use std::cell::RefCell;
 
 /// The board, and the bytes to and from it.
@@ -36,6 +36,16 @@ pub extern "C" fn start() {
 pub extern "C" fn send() {
     PIPE.with_borrow_mut(|Pipe { board, bytes }| {
         board.iter_mut().for_each(|board| board.uart_write(bytes));
+    });
+}
+
+/// Sets the 16 switches, one bit each.
+#[unsafe(no_mangle)]
+pub extern "C" fn set_switches(on: u32) {
+    PIPE.with_borrow_mut(|Pipe { board, .. }| {
+        board
+            .iter_mut()
+            .for_each(|board| board.set_switches(on as u16));
     });
 }
 

@@ -39,15 +39,14 @@ pub trait Live: Board {
     ///
     /// # Errors
     /// The image exceeds main memory, or this board has no direct access to its memory.
-    fn boot(&mut self, _program: &[u8], _places: Places) -> Result<(), BoardError> {
+    fn boot(&mut self, _program: &[u8]) -> Result<(), BoardError> {
         let error = "expected a simulated board, found one with a serial line only";
         Err(BoardError::simulation(error))
     }
 
-    /// Processes output of the program. After the last message of a program that has ended, returns the source location of the address in
-    /// the message.
-    fn hear(&mut self, _output: &[u8]) -> Option<String> {
-        None
+    /// Returns the source locations of the board's first program, once.
+    fn take_places(&mut self) -> Places {
+        Places::default()
     }
 
     /// Interval of the measurements on the console. A serial line is slow, so by default it is long.
@@ -166,14 +165,12 @@ impl<S: Simulation + ?Sized, C: Clock> Live for LiveSimulation<S, C> {
         Ok(Some(frame))
     }
 
-    fn boot(&mut self, program: &[u8], places: Places) -> Result<(), BoardError> {
-        self.board.inner().boot(program)?;
-        self.places = places;
-        Ok(())
+    fn boot(&mut self, program: &[u8]) -> Result<(), BoardError> {
+        self.board.inner().boot(program)
     }
 
-    fn hear(&mut self, output: &[u8]) -> Option<String> {
-        self.places.hear(output)
+    fn take_places(&mut self) -> Places {
+        std::mem::take(&mut self.places)
     }
 
     fn sample_period(&self) -> Duration {

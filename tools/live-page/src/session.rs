@@ -14,7 +14,7 @@ use glint_core::camera::View;
 use glint_core::console::{Command, PROMPT, Setting};
 use glint_core::matrix::Axis;
 use glint_core::picture::Size;
-use glint_program_image::START_ADDRESS;
+use glint_program_image::{Places, START_ADDRESS};
 use serde_json::Value;
 use std::collections::VecDeque;
 use std::io;
@@ -166,6 +166,8 @@ pub struct Session<'a> {
     /// Whether a prompt has been received. The session sends no commands of its own to a program
     /// without a prompt.
     has_prompt: bool,
+    /// The source locations of the running program.
+    places: Places,
     /// The wait for the first prompt of a program that has just started.
     meeting: Option<Meeting>,
     /// The last bytes of the console's output; empty after the session's own commands, because
@@ -187,6 +189,7 @@ impl<'a> Session<'a> {
     ) -> Result<Self, BoardError> {
         let mut session = Self {
             sampled: board.clock(),
+            places: board.take_places(),
             board: Watched {
                 board,
                 channels,
@@ -268,20 +271,16 @@ impl<'a> Session<'a> {
 
     /// Replaces the running program. The pages receive the lists of the new program, which are empty for a program without a prompt.
     fn start_program(&mut self, program: Program) -> Result<(), BoardError> {
-        let Program {
-            name,
-            image,
-            places,
-        } = program;
-        let started = format!("{name} runs, {} bytes.", image.len());
+        let started = format!("{} runs, {} bytes.", program.name, program.image.len());
         if self.board.memory().is_none() {
-            return self.load(&name, &image, started);
+            return self.load(program, started);
         }
-        if let Err(error) = self.board.board.boot(&image, places) {
-            self.hub.notify(format!("{name}: {error}"), true);
+        if let Err(error) = self.board.board.boot(&program.image) {
+            self.hub.notify(format!("{}: {error}", program.name), true);
             return Ok(());
         }
         self.forget_program();
+        self.places = program.places;
         self.await_prompt(started, FIRST_PATIENCE_MS);
         Ok(())
     }
@@ -292,12 +291,18 @@ impl<'a> Session<'a> {
         self.frames.clear();
         self.orbit = None;
         self.end.clear();
+        self.places = Places::default();
         self.send_lists(Vec::new(), Choices::default());
     }
 
     /// Loads a program by the BIOS of a board on a serial line, and starts it. The pages are told if this fails; the board is then in its
     /// BIOS, or runs its earlier program. `started` is the text for the pages if it succeeds.
-    fn load(&mut self, name: &str, image: &[u8], started: String) -> Result<(), BoardError> {
+    fn load(&mut self, program: Program, started: String) -> Result<(), BoardError> {
+        let Program {
+            name,
+            image,
+            places,
+        } = program;
         self.forget_program();
         self.await_prompt(String::new(), u64::MAX);
         let wait = format!(
@@ -309,7 +314,7 @@ impl<'a> Session<'a> {
         let mut is_waiting = true;
         let result = flash::flash(
             &mut self.board,
-            image,
+            &image,
             START_ADDRESS,
             BIOS_PATIENCE_MS,
             &mut |done, all| {
@@ -325,6 +330,7 @@ impl<'a> Session<'a> {
         let error = match result {
             Ok(mut report) => {
                 self.hub.notify(started, false);
+                self.places = places;
                 return self.pass(&mut report.said);
             }
             Err(FlashError::Board(BoardError::Cancelled)) => STOPPED.to_owned(),
@@ -506,7 +512,7 @@ impl<'a> Session<'a> {
             return Ok(());
         }
         self.hub.send_console(output);
-        if let Some(place) = self.board.board.hear(output) {
+        if let Some(place) = self.places.hear(output) {
             self.hub.send_console(format!("{place}\r\n").as_bytes());
         }
         self.end.append(output);

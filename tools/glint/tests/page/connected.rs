@@ -176,10 +176,17 @@ fn a_board_on_a_port_of_the_browser_is_loaded_and_used() {
         fs::write(documented(), browser.picture(&page)).unwrap();
     }
 
-    // A program in place of the firmware. It does not answer, so the next program waits for the reset button, until Stop.
-    press_program(&mut browser, &page, "kernel");
-    browser.wait(&page, &format!("{LOG}.includes('newton: ')"));
-    browser.wait(&page, &format!("{NOTICE}.startsWith('kernel.bin runs, ')"));
+    // A program in place of the firmware, whose fault is found in its sources.
+    let faults = built::find("firmware/programs/faults.elf", "cargo xtask programs").unwrap();
+    let faults = fs::read(faults).unwrap();
+    drop_files(&mut browser, &page, &[("faults.elf", faults)]);
+    browser.wait(&page, &format!("{NOTICE}.startsWith('faults.elf runs, ')"));
+    change(&mut browser, &page, "port.board.set_switches(1 << 4)");
+    for text in ["trap: illegal instruction", " is in update, "] {
+        browser.wait(&page, &format!("{LOG}.includes('{text}')"));
+    }
+
+    // The program does not answer, so the next one waits for the reset button, until Stop.
     press_program(&mut browser, &page, "kernel");
     let waiting = "waiting for the board's BIOS";
     browser.wait(&page, &format!("{NOTICE}.includes(\"{waiting}\")"));
