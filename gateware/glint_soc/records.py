@@ -214,7 +214,7 @@ FLASH_HEADER = Record("FlashHeader", "Header of the contents of a flash image.",
 ))
 
 FLASH_ENTRY = Record("FlashEntry", "Entry of the list of items of a flash image.", (
-    Field("kind", 32, "kind: 1 mesh, 2 scene, 3 list, 4 texture"),
+    Field("kind", 32, "kind: 1 mesh, 2 scene, 3 list, 4 texture, 5 program"),
     Field("length", 32, "length of the item in bytes"),
     Field("checksum", 32, "CRC-32 of the item"),
     _reserved(32),

@@ -600,7 +600,7 @@ impl FlashHeader {
 /// Entry of the list of items of a flash image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FlashEntry {
-    /// Kind: 1 mesh, 2 scene, 3 list, 4 texture.
+    /// Kind: 1 mesh, 2 scene, 3 list, 4 texture, 5 program.
     pub kind: u32,
     /// Length of the item in bytes.
     pub length: u32,
