@@ -94,13 +94,16 @@ impl Terminal {
         self.print(format_args!("{PROMPT}"));
     }
 
-    /// Prints a line of text above the prompt and the line being typed.
+    /// Prints a line of text above the prompt and the line being typed. After a complete line, whose reply follows, prints no prompt: the
+    /// reply begins at the start of a line.
     pub fn notify(&mut self, text: fmt::Arguments) {
         if self.is_lent {
             return;
         }
         self.print(format_args!("\r\x1b[K{text}\n"));
-        let _ = self.editor.redraw(&mut self.output);
+        if self.waiting.is_none() {
+            let _ = self.editor.redraw(&mut self.output);
+        }
     }
 
     /// Prints text. The text is lost if the serial line accepts no text.

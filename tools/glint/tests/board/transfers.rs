@@ -70,7 +70,7 @@ impl Line {
         self.from_board.clear();
         self.board.uart_write(format!("{line}\r").as_bytes());
         // A note about the picture may repeat the prompt.
-        let answer = self.board.read_until("\r\nok\r\n", PATIENCE).unwrap();
+        let answer = self.board.read_until("ok\r\n", PATIENCE).unwrap();
         self.board.read_until(PROMPT, PATIENCE).unwrap();
         answer
     }
