@@ -67,38 +67,28 @@ pub fn bitstream(file: &[u8]) -> Result<&[u8], FormatError> {
 /// scene, and the list of all scenes.
 ///
 /// # Errors
-/// A mesh, a texture or a program cannot be read, or a name is invalid.
+/// A mesh, a texture or a program cannot be read, two different ones have the same name, or a name is invalid.
 pub fn pieces(scenes: &[SceneFile]) -> Result<Vec<Piece>, InputError> {
     let of = |scene: &SceneFile| match scene.scenes() {
         [] => vec![scene.clone()],
         parts => parts.to_vec(),
     };
-    let is_new = |pieces: &[Piece], kind, name: &str| {
-        let mut known = pieces.iter();
-        known.all(|piece| (piece.kind, piece.name.as_str()) != (kind, name))
-    };
     let mut uploads: Vec<Piece> = Vec::new();
     let (mut all, mut list): (Vec<Piece>, String) = Default::default();
     for scene in scenes.iter().flat_map(of) {
-        for name in scene.meshes() {
-            if !is_built_in(name) && is_new(&uploads, Kind::Mesh, name) {
-                check_name(name)?;
-                uploads.push(piece(Kind::Mesh, name, scene::mesh(name, scene.folder())?));
-            }
+        let folder = scene.folder();
+        for name in scene.meshes().iter().filter(|name| !is_built_in(name)) {
+            add(&mut uploads, Kind::Mesh, name, || scene::mesh(name, folder))?;
         }
-        if let Some(name) = scene.texture()
-            && is_new(&uploads, Kind::Texture, name)
-        {
-            check_name(name)?;
-            let bytes = scene::texture(name, scene.folder())?;
-            uploads.push(piece(Kind::Texture, name, bytes));
+        if let Some(name) = scene.texture() {
+            add(&mut uploads, Kind::Texture, name, || {
+                scene::texture(name, folder)
+            })?;
         }
-        if let Some(name) = scene.program()
-            && is_new(&uploads, Kind::Program, name)
-        {
-            check_name(name)?;
-            let bytes = scene::program(name, scene.folder())?;
-            uploads.push(piece(Kind::Program, name, bytes));
+        if let Some(name) = scene.program() {
+            add(&mut uploads, Kind::Program, name, || {
+                scene::program(name, folder)
+            })?;
         }
         list += &format!("{}\n", scene.name());
         if all.iter().all(|known| known.name != scene.name()) {
@@ -112,6 +102,31 @@ pub fn pieces(scenes: &[SceneFile]) -> Result<Vec<Piece>, InputError> {
         uploads.push(piece(Kind::List, START, list.into_bytes()));
     }
     Ok(uploads)
+}
+
+/// Adds the item that `read` returns, unless the same item has been added already.
+fn add(
+    pieces: &mut Vec<Piece>,
+    kind: Kind,
+    name: &str,
+    read: impl FnOnce() -> Result<Vec<u8>, InputError>,
+) -> Result<(), InputError> {
+    check_name(name)?;
+    let bytes = read()?;
+    let is_known = |known: &&Piece| known.kind == kind && known.name == name;
+    match pieces.iter().find(is_known) {
+        None => pieces.push(piece(kind, name, bytes)),
+        Some(known) if known.bytes == bytes => {}
+        Some(_) => {
+            let expected = "one file of each name; rename one of the files";
+            let found = format!(
+                "two different files {} of scenes in two folders",
+                quote(name.as_bytes())
+            );
+            return Err(FormatError::whole(expected, found).in_file("image"));
+        }
+    }
+    Ok(())
 }
 
 fn piece(kind: Kind, name: &str, bytes: Vec<u8>) -> Piece {

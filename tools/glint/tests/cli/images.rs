@@ -62,6 +62,29 @@ fn an_image_has_scenes_in_order_and_their_meshes() {
 }
 
 #[test]
+fn two_different_files_of_one_name_are_refused() {
+    let folder = folder("image-names");
+    for (name, model) in [("a", "cube"), ("b", "gear")] {
+        let folder = folder.join(name);
+        fs::create_dir_all(&folder).unwrap();
+        let scene = "title = \"A net\"\nprogram = \"net.wft\"\n";
+        fs::write(folder.join(format!("{name}.toml")), scene).unwrap();
+        succeed(&folder, &format!("wireframe make {model} --out net.wft"));
+    }
+    fs::write(folder.join("firmware.bin"), [0x13; 400]).unwrap();
+    let make = "image make --firmware firmware.bin --scene a/a.toml,b/b.toml --out names.bin";
+    let error = refused(&folder, make);
+    assert_has(
+        &error,
+        "expected one file of each name; rename one of the files",
+    );
+    assert_has(&error, "two different files 'net.wft'");
+    assert!(!folder.join("names.bin").exists());
+    fs::copy(folder.join("a/net.wft"), folder.join("b/net.wft")).unwrap();
+    succeed(&folder, make);
+}
+
+#[test]
 fn the_header_of_a_bit_file_is_left_out() {
     let folder = folder("image-bitstream");
     let data = [[0xff; 32].as_slice(), &[0xaa, 0x99, 0x55, 0x66], &[5; 20]].concat();
