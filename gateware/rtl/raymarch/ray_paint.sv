@@ -79,9 +79,9 @@ module ray_paint #(
         .clk, .mantissa(depth_mantissa), .exponent(depth_exponent), .depth(depth_5), .code(code_28)
     );
 
-    // Indices into the tables of fog and light in clock 7, and the entries of the tables in clock 9. The steps of the table of fog are equal
-    // in its first 32 entries, and twice as long in each further 32 entries: the index has an exponent of three bits and five bits below the
-    // leading bit of the depth.
+    // Indices into the tables of fog and light in clock 7, and the entries of the tables in clock 9. The steps of the table of fog are
+    // equal in its first 64 entries, and in each further 32 entries twice as long as before: the index has an exponent of three bits and
+    // the five bits below the leading bit of the depth.
     logic [22:0] deep_6;
     logic [7:0]  fog_entry_6, fog_entry_7, fog_9, light_9, height_9, steps_7;
 

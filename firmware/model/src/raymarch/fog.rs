@@ -28,16 +28,16 @@ impl Palette {
     /// value. The last entry is also used for all larger depths.
     #[must_use]
     pub fn with_fog(self, setup: &FieldSetup, density: U4_28) -> Self {
-        // Selects the smallest range of depths at whose end the transmittance is e^−8, or the largest range if none has this.
+        // Selects the smallest range of depths at whose end the transmittance is at most e^−8, or the largest range if there is none.
         const ENOUGH: u64 = 8 << 32;
         let unit = fog_of_unit(setup, density);
         let fog_shift = (0..7).find(|shift| unit << (shift + 8) >= ENOUGH);
         let fog_shift = fog_shift.unwrap_or(7);
-        // The transmittances of half a step and of a step. The first entry is for the depth of half a step.
+        // The transmittances of half a step, which is rounded down to 2^−32, and of a step. The first entry is for the depth of half a step.
         let mut half = faded((unit << fog_shift) >> (FINE_LOG2 + 1));
         let mut whole = product(half, half);
         let (mut left, mut fog) = (FULL, [0; 256]);
-        for (part, entries) in fog.chunks_exact_mut(EQUAL).enumerate() {
+        for (part, entries) in fog.chunks_exact_mut(PART).enumerate() {
             if part > 1 {
                 (half, whole) = (whole, product(whole, whole));
             }
@@ -60,18 +60,18 @@ impl Palette {
 
     /// The entry of the table `fog` for a depth with 21 fraction bits.
     ///
-    /// The steps of the first 32 entries are equal, and those of each further 32 entries twice as long, because the fog changes most in
-    /// front.
+    /// The steps of the first 64 entries are equal. In each further 32 entries they are twice as long as before, because the fog changes
+    /// most in front.
     pub fn fog_at(&self, depth: u64) -> u8 {
         let steps = (depth >> (21 - FINE_LOG2 + self.fog_shift)).min((1 << 12) - 1) as usize;
-        let octave = (steps / EQUAL).checked_ilog2().unwrap_or(0) as usize;
-        let index = EQUAL * octave + (steps >> octave);
+        let octave = (steps / PART).checked_ilog2().unwrap_or(0) as usize;
+        let index = PART * octave + (steps >> octave);
         self.fog.get(index).copied().unwrap_or(u8::MAX)
     }
 }
 
-/// Number of entries of the table of fog with equal steps.
-const EQUAL: usize = 32;
+/// Number of entries in a part of the table of fog. The steps of a part are equal.
+const PART: usize = 32;
 /// Base-2 logarithm of the number of first steps of the table of fog in a depth of 2^`fog_shift`.
 const FINE_LOG2: u32 = 4;
 

@@ -284,8 +284,10 @@ impl Fraction {
     /// The fraction of `x`, to nearest, ties up, for |x| < 2^45.
     ///
     /// The product with the approximation is at most |x| / 2^48 < 1/8 too small, so its whole part is the exact quotient or the quotient
-    /// less 1. The rest of the division is less than 2·whole, so 64 bits hold it although both products may have more.
+    /// less 1; it is at most |x|, so it fits i64. The rest of the division is less than 2·whole, so 64 bits hold it although both products
+    /// may have more.
     fn of(&self, x: i64) -> i64 {
+        debug_assert!(x.unsigned_abs() < 1 << 45);
         let (size, low) = (x.unsigned_abs(), self.approximation & 0xffff_ffff);
         let lower = (size >> 32) * low + (((size & 0xffff_ffff) * low) >> 32);
         let mut quotient = (size * (self.approximation >> 32) + lower) >> (Self::BITS - 32);
