@@ -172,10 +172,10 @@ struct Soc : Harness {
         while (count--) {
             top.sys_clk = 1;
             top.pix_clk = 0;
-            top.eval();
+            eval();
             top.sys_clk = 0;
             top.pix_clk = pixel_tick();
-            top.eval();
+            eval();
         }
     }
 

@@ -107,7 +107,7 @@ fn averages_are_the_models() {
 }
 
 /// The verilated SoC draws a mesh in quarters before a sky, and a field. Each quarter starts directly after the previous
-/// quarter, also if it has no geometry pass. The field's frame is smaller, because its simulation takes twice the time of the mesh's.
+/// quarter, also if it has no geometry pass.
 #[test]
 fn the_soc_averages() {
     let mut board = running_board();
@@ -126,9 +126,9 @@ fn the_soc_averages() {
         ..Frame::new(Subject::Mesh(plain(&sphere)), view, Size::W1280)
     };
     check(&mut renderer, Backend::Gateware, &before_sky, "mesh");
-    let frame = Frame::new(Subject::Field(field), view, Size::W640);
+    let frame = Frame::new(Subject::Field(field), view, Size::W1280);
     let stats = check(&mut renderer, Backend::Gateware, &frame, "field");
     let busy = stats.engine.get("cycles_busy").unwrap();
     let cycles = stats.cycles.unwrap();
-    assert!(busy > cycles / 20 * 17, "{busy} of {cycles} cycles");
+    assert!(busy > cycles / 10 * 9, "{busy} of {cycles} cycles");
 }
