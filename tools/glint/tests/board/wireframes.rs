@@ -273,7 +273,15 @@ fn programs_with_names() {
     assert!(shows(&mut console, &ball));
 
     // The memory of a removed program is free again, and the other programs move there.
+    let free = |lines: &[String]| -> u32 {
+        let free = lines.iter().find_map(|line| line.strip_prefix("free "));
+        free.unwrap().split(' ').next().unwrap().parse().unwrap()
+    };
+    let before = free(&console.command("models").unwrap());
     console.command("unload cross").unwrap();
+    let models = console.command("models").unwrap();
+    assert!(models.contains(&"uploads 2 of 18".to_owned()), "{models:?}");
+    assert!(free(&models) > before, "{models:?}");
     assert!(shows(&mut console, &ball));
     // A mesh replaces a program of its name, which is then no longer shown.
     let mesh = mesh("icosphere:1");
