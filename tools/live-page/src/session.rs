@@ -35,6 +35,13 @@ const FIRST_PATIENCE_MS: u64 = 1_000;
 /// Longest wait for the BIOS's request for a serial boot, in ms of the board's time.
 const BIOS_PATIENCE_MS: u64 = 60_000;
 
+/// Time after the load of a program over a serial line within which its first prompt is expected, in ms of the board's time.
+const LOADED_PATIENCE_MS: u64 = 10_000;
+
+/// Notice about a request that only the firmware can execute.
+const NO_FIRMWARE: &str =
+    "expected the prompt of the firmware, found none: load the firmware first, then try again";
+
 /// Advice for a board on a serial line that does not answer.
 const NO_ANSWER: &str =
     "press the board's reset button, or drop a program, which the board's BIOS loads";
@@ -111,7 +118,7 @@ impl Board for Watched<'_> {
     }
 }
 
-/// Runs a board whose firmware waits for a command, until `stop` is set.
+/// Runs a board until `stop` is set. A board on a serial line may run its firmware or another program, be in its BIOS, or be silent.
 ///
 /// # Errors
 /// The line to the board has failed.
@@ -170,14 +177,16 @@ pub struct Session<'a> {
     places: Places,
     /// The wait for the first prompt of a program that has just started.
     meeting: Option<Meeting>,
+    /// Time until which requests are kept for a program that has just started and has not sent its prompt, in ms of the board's time.
+    kept_ms: u64,
     /// The last bytes of the console's output; empty after the session's own commands, because
     /// their replies end with the prompt.
     end: Vec<u8>,
 }
 
 impl<'a> Session<'a> {
-    /// Begins the session with a board whose firmware waits for a command, and sends the firmware's lists. All calls fail once
-    /// `stop` is set.
+    /// Begins the session with a board. On a serial line it may run its firmware or another program, be in its BIOS, or be silent: the
+    /// firmware's lists are sent as soon as it prints its prompt. All calls fail once `stop` is set.
     ///
     /// # Errors
     /// The line to the board has failed.
@@ -208,6 +217,7 @@ impl<'a> Session<'a> {
             uploads: 0,
             has_prompt: false,
             meeting: None,
+            kept_ms: 0,
             end: Vec::new(),
         };
         // A simulated board has just started, and its program may have no prompt, so nothing is sent to it.
@@ -224,7 +234,14 @@ impl<'a> Session<'a> {
     fn await_prompt(&mut self, started: String, wait_ms: u64) {
         self.has_prompt = false;
         let end_ms = self.board.now_ms().saturating_add(wait_ms);
+        self.kept_ms = if end_ms == u64::MAX { 0 } else { end_ms };
         self.meeting = Some(Meeting { end_ms, started });
+    }
+
+    /// Starts to wait for the prompt of a board that has not answered. The prompt may have arrived meanwhile.
+    fn await_prompt_again(&mut self) {
+        self.await_prompt(String::new(), u64::MAX);
+        self.has_prompt = self.end.ends_with(PROMPT.as_bytes());
     }
 
     /// Finds the prompt of the firmware of a board on a serial line, which may have run for a long time. A board without an answer may
@@ -308,8 +325,9 @@ impl<'a> Session<'a> {
         let wait = format!(
             "{name}: waiting for the board's BIOS; if this takes long, press the board's reset button"
         );
-        self.hub.notify(wait, false);
+        // A page may cancel the wait as soon as it is told of it.
         self.board.set_may_cancel(true);
+        self.hub.notify(wait, false);
         let mut report = reporter(self.hub);
         let mut is_waiting = true;
         let result = flash::flash(
@@ -331,6 +349,7 @@ impl<'a> Session<'a> {
             Ok(mut report) => {
                 self.hub.notify(started, false);
                 self.places = places;
+                self.kept_ms = self.board.now_ms().saturating_add(LOADED_PATIENCE_MS);
                 return self.pass(&mut report.said);
             }
             Err(FlashError::Board(BoardError::Cancelled)) => STOPPED.to_owned(),
@@ -357,6 +376,7 @@ impl<'a> Session<'a> {
         self.board.read(&mut output, POLL_MS)?;
         self.pass(&mut output)?;
         self.end_meeting()?;
+        self.drop_vain_requests();
         if !self.is_idle() {
             return match self.receive()? {
                 // The user's keys go to the running program, as on a terminal.
@@ -386,7 +406,10 @@ impl<'a> Session<'a> {
                 let session = self.uploads;
                 self.up = file.up.unwrap_or(self.up);
                 self.ask_until_cancelled(|console, hub| upload(console, hub, &file, session))?;
-                self.update_lists()
+                if self.has_prompt {
+                    self.update_lists()?;
+                }
+                Ok(())
             }
             Some(Request::Picture) => self.ask_until_cancelled(send_picture).map(drop),
             Some(Request::Interrupt) => Ok(()),
@@ -500,6 +523,18 @@ impl<'a> Session<'a> {
         }
     }
 
+    /// Drops the queued requests that only the firmware can execute, if no program has a prompt or has just started, and tells the pages.
+    fn drop_vain_requests(&mut self) {
+        if self.has_prompt || self.board.now_ms() < self.kept_ms {
+            return;
+        }
+        let count = self.waiting.len();
+        (self.waiting).retain(|request| !matches!(request, Request::Picture | Request::Upload(_)));
+        if self.waiting.len() < count {
+            self.hub.notify(NO_FIRMWARE, true);
+        }
+    }
+
     /// Whether the next measurement is due.
     fn is_sample_due(&self) -> bool {
         let live = &self.board.board;
@@ -540,7 +575,8 @@ impl<'a> Session<'a> {
         self.board.write(format!("{clear}{line}\r").as_bytes())
     }
 
-    /// Runs a task on the console up to the next prompt. The viewers do not receive the output.
+    /// Runs a task on the console up to the next prompt. The viewers do not receive the output. If the board does not answer, the session
+    /// waits for its prompt.
     fn ask(
         &mut self,
         task: impl FnOnce(&mut Console<Watched>, &Hub) -> Result<(), TransferError>,
@@ -570,6 +606,11 @@ impl<'a> Session<'a> {
             | Err(TransferError::Console(ConsoleError::Board(error))) => Err(error),
             Err(error) => {
                 self.hub.notify(error.to_string(), true);
+                if let TransferError::Console(ConsoleError::Silence { .. } | ConsoleError::Bios) =
+                    error
+                {
+                    self.await_prompt_again();
+                }
                 Ok(false)
             }
         }
@@ -585,11 +626,14 @@ impl<'a> Session<'a> {
         self.board.set_may_cancel(false);
         let has_succeeded = match result {
             Err(BoardError::Cancelled) => {
+                // The next cancellation ends the synchronisation.
+                self.board.set_may_cancel(true);
                 self.hub.notify(STOPPED, true);
                 // The board ends the transfer, and the rest of the reply is dropped.
                 if self.has_prompt {
-                    self.ask(|console, _| Ok(console.synchronise()?))?;
+                    self.synchronise()?;
                 }
+                self.board.set_may_cancel(false);
                 false
             }
             result => result?,
@@ -598,6 +642,16 @@ impl<'a> Session<'a> {
             self.hub.end_progress();
         }
         Ok(has_succeeded)
+    }
+
+    /// Synchronises with the firmware, until a page cancels this. Without success, the session waits for the prompt.
+    fn synchronise(&mut self) -> Result<(), BoardError> {
+        match self.try_ask(|console, _| Ok(console.synchronise()?)) {
+            Ok(true) => {}
+            Ok(false) | Err(BoardError::Cancelled) => self.await_prompt_again(),
+            Err(error) => return Err(error),
+        }
+        Ok(())
     }
 
     /// Reads the firmware's lists, and sends them to the pages.
