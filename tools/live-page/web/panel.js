@@ -65,8 +65,10 @@ export function startPanel(send) {
   };
   // With Shift a button stays pressed until its next press, so that one mouse can press two buttons together.
   let kept = 0;
-  const begin = (number, { shiftKey }) => {
-    kept = shiftKey ? kept | (1 << number) : kept & ~(1 << number);
+  const begin = (number, { shiftKey, repeat }) => {
+    if (repeat) return;
+    const isKept = (kept >> number) & 1;
+    kept = shiftKey && !isKept ? kept | (1 << number) : kept & ~(1 << number);
     press(number, true);
   };
   const end = (number) => (kept >> number) & 1 || press(number, false);

@@ -219,20 +219,20 @@ fn a_telephone_shows_picture_and_controls() {
     }
 }
 
-/// With Shift a button stays pressed, so that one mouse presses two buttons together, which start the wireframe again.
+/// A button that is pressed with Shift stays pressed until its next press, with or without Shift.
 #[test]
 fn shift_keeps_a_button_pressed() {
     let served = Served::start("page-shift");
     let mut browser = Browser::start();
     let page = open(&mut browser, &served.url);
-    browser.evaluate(&page, "document.getElementById('line').focus()");
-    for line in ["scene wireframe", "press up", "press left rotate"] {
-        browser.type_line(&page, line);
-    }
     let pressed = "[...document.querySelectorAll('[aria-pressed=true]')].map((button) => button.textContent).join()";
     let key = |name: &str, button: u8, shift: bool| {
+        let (name, repeat) = match name {
+            "repeat" => ("keydown", true),
+            _ => (name, false),
+        };
         format!(
-            "document.querySelectorAll('#buttons button')[{button}].dispatchEvent(new KeyboardEvent('{name}', {{ key: ' ', shiftKey: {shift} }}))"
+            "document.querySelectorAll('#buttons button')[{button}].dispatchEvent(new KeyboardEvent('{name}', {{ key: ' ', shiftKey: {shift}, repeat: {repeat} }}))"
         )
     };
     for (name, button, shift, expected) in [
@@ -243,6 +243,11 @@ fn shift_keeps_a_button_pressed() {
         ("keyup", 3, false, "BTN2"),
         ("keydown", 2, false, "BTN2"),
         ("keyup", 2, false, ""),
+        ("keydown", 1, true, "BTN1"),
+        ("repeat", 1, true, "BTN1"),
+        ("keyup", 1, true, "BTN1"),
+        ("keydown", 1, true, "BTN1"),
+        ("keyup", 1, true, ""),
     ] {
         browser.evaluate(&page, &key(name, button, shift));
         browser.wait(&page, &format!("{pressed} === '{expected}'"));
