@@ -140,10 +140,19 @@ const HANDLERS = {
 element("full").addEventListener("click", () => element("monitor").requestFullscreen().catch(({ message }) => notify(message)));
 element("full").hidden = !document.fullscreenEnabled;
 
+// Clears the state of the last board.
+function forgetBoard() {
+  setHolder("nobody");
+  panel.release();
+  showProgress({ done: 0, all: 0 });
+  showRemarks({});
+}
+
 showPrograms();
 setHolder("nobody");
 sendData = startLink({
   opened() {
+    forgetBoard();
     notify("");
     console_.clear();
     clearPicture();
@@ -154,7 +163,7 @@ sendData = startLink({
     HANDLERS[message.type]?.(message);
   },
   closed(text) {
-    setHolder("nobody");
+    forgetBoard();
     notify(text);
   },
   notify,
