@@ -8,10 +8,14 @@ export const IS_TAKEN = null;
 // leaves the board as it is. Returns a function that sends a message: a text, or bytes.
 export function startLink(page) {
   let board = startBoard(page, {});
-  startSerial({
+  const releasePort = startSerial({
     connected(line, name) {
       board.end();
-      board = startBoard(page, { line, name });
+      const closed = (text) => {
+        releasePort();
+        page.closed(text);
+      };
+      board = startBoard({ ...page, closed }, { line, name });
     },
     disconnected() {
       board.end();
@@ -39,7 +43,8 @@ function startBoard({ opened, received, closed }, { line, name }) {
     // on.
     if (hasEnded) return;
     end();
-    closed(`The board has stopped: ${reason}. Load the page again to start it.`);
+    if (line) closed(`The board's program on this page has stopped: ${reason}. Load the page again.`);
+    else closed(`The board has stopped: ${reason}. Load the page again to start it.`);
   };
   worker.addEventListener("message", ({ data: { messages, end: reason } }) => {
     if (hasEnded) return;

@@ -29,7 +29,7 @@ function pump(port, line, failed) {
   };
 
   async function read() {
-    let error = new Error("it has no more bytes");
+    let error = new Error("Expected bytes of the board, found the end of the port's data.");
     // After a damaged byte or a full buffer, the port has a new stream; after it was unplugged, none.
     while (port.readable && !isOver) {
       reader = port.readable.getReader();
@@ -49,7 +49,7 @@ function pump(port, line, failed) {
   }
 
   line.onmessage = ({ data }) => writer.write(data).then(() => line.postMessage(IS_WRITTEN), fail);
-  read();
+  read().catch(fail);
   return over;
 }
 
@@ -61,13 +61,13 @@ function nameOf(port) {
 }
 
 // Calls `connected` with a line to an open port and its name, `disconnected` after the user has closed the port, `lost` with a text after
-// the port has failed, and `notify` with an error after which everything is as before.
+// the port has failed, and `notify` with an error after which everything is as before. Returns a function that closes the open port, if any.
 export function startSerial({ connected, disconnected, lost, notify }) {
   const button = document.getElementById("connect");
   const canConnect = navigator.serial !== undefined && "Suspending" in WebAssembly;
   button.hidden = !canConnect;
   document.getElementById("no-serial").hidden = canConnect;
-  if (!canConnect) return;
+  if (!canConnect) return () => {};
   // Closes the open port, if any.
   let close;
 
@@ -88,22 +88,41 @@ export function startSerial({ connected, disconnected, lost, notify }) {
       return notify(`The serial port cannot be opened. Expected a port that this user may open, and that no other program or page has open; found: ${message}`);
     }
     const { port1, port2 } = new MessageChannel();
-    set(pump(port, port1, (reason) => {
-      set(undefined);
-      lost(`The serial port has failed: ${reason} Check the cable and connect the board again, or load the page again for the emulated board.`);
-    }));
+    try {
+      set(pump(port, port1, (reason) => {
+        set(undefined);
+        lost(`The serial port has failed: ${reason} Check the cable and connect the board again, or load the page again for the emulated board.`);
+      }));
+    } catch (error) {
+      await port.close().catch(() => {});
+      throw error;
+    }
     connected(port2, nameOf(port));
   }
 
-  async function disconnect() {
-    await close();
+  async function release() {
+    const end = close;
     set(undefined);
+    await end?.();
+  }
+
+  async function disconnect() {
+    await release();
     disconnected();
   }
 
-  button.addEventListener("click", async () => {
+  // Runs an action. The button is disabled meanwhile.
+  async function act(action) {
     button.disabled = true;
-    await (close ? disconnect() : connect());
-    button.disabled = false;
-  });
+    try {
+      await action();
+    } catch ({ message }) {
+      notify(`The serial port cannot be used: ${message}`);
+    } finally {
+      button.disabled = false;
+    }
+  }
+
+  button.addEventListener("click", () => act(close ? disconnect : connect));
+  return () => act(release);
 }

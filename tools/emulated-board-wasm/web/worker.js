@@ -61,6 +61,7 @@ async function startEmulated() {
   board = instance.exports;
   put(new Uint8Array(firmware));
   board.start();
+  receiveEarly();
   return board.run;
 }
 
@@ -71,24 +72,39 @@ async function startPort(line, name) {
   const { instance } = await WebAssembly.instantiate(await load("board.wasm"), { env: { now, deliver, ...suspending } });
   board = instance.exports;
   put(new TextEncoder().encode(name));
-  await WebAssembly.promising(board.connect)();
+  const connected = WebAssembly.promising(board.connect)();
+  receiveEarly();
+  await connected;
   return WebAssembly.promising(board.run);
 }
 
 // The exports of the board's code.
 let board;
-const { line, name } = await started;
+// The messages of the page from before the board's start; undefined after it.
+let early = [];
 
-addEventListener("message", ({ data }) => {
-  if (data === IS_TAKEN) {
-    isTaken = true;
-  } else if (typeof data === "string") {
+function receive(data) {
+  if (typeof data === "string") {
     put(new TextEncoder().encode(data));
     board.receive_text();
   } else {
     put(new Uint8Array(data));
     board.receive_bytes();
   }
+}
+
+function receiveEarly() {
+  const messages = early;
+  early = undefined;
+  messages.forEach(receive);
+}
+
+const { line, name } = await started;
+
+addEventListener("message", ({ data }) => {
+  if (data === IS_TAKEN) isTaken = true;
+  else if (early) early.push(data);
+  else receive(data);
 });
 
 // The worker sends itself a message to start the next turn. Unlike a timer, the message has no
@@ -98,9 +114,9 @@ const next = new MessageChannel();
 try {
   const run = await (line ? startPort(line, name) : startEmulated());
   const turn = async () => {
-    const early = await run();
+    const aheadMs = await run();
     pass();
-    if (early > 0) setTimeout(() => turn().catch(fail), early);
+    if (aheadMs > 0) setTimeout(() => turn().catch(fail), aheadMs);
     else next.port2.postMessage(null);
   };
   next.port1.onmessage = () => turn().catch(fail);

@@ -124,8 +124,20 @@ fn a_board_on_a_port_of_the_browser_is_loaded_and_used() {
     browser.wait(&page, &format!("{BOARD} === 'board emulated'"));
     change(&mut browser, &page, "port.isTaken = false");
 
-    // The console of the BIOS.
-    press_connect(&mut browser, &page);
+    // The console of the BIOS. It receives a line that the user has entered before the session has started.
+    let enter = format!(
+        "new Promise((done) => {{
+            new MutationObserver((_, observer) => {{
+                observer.disconnect();
+                document.getElementById('line').value = 'ident';
+                document.getElementById('command').requestSubmit();
+                done(document.body.dataset.holder);
+            }}).observe({BUTTON}, {{ childList: true }});
+            {BUTTON}.click();
+        }})"
+    );
+    // The emulated board's page had control.
+    assert_eq!(browser.evaluate(&page, &enter), "nobody");
     let named = "board on a serial port, USB 0403:6010";
     browser.wait(&page, &format!("{BOARD} === '{named}'"));
     browser.wait(
@@ -133,11 +145,20 @@ fn a_board_on_a_port_of_the_browser_is_loaded_and_used() {
         &format!("{NOTICE}.includes('found the prompt of the BIOS')"),
     );
     browser.wait(&page, "document.getElementById('scenes').hidden");
+    browser.wait(&page, &format!("{LOG}.includes('Ident: ')"));
+    let notice = browser.evaluate(&page, NOTICE);
+    assert!(
+        !notice.as_str().unwrap().contains("has stopped"),
+        "{notice}"
+    );
     command(&mut browser, &page, "help");
     browser.wait(
         &page,
         &format!("{LOG}.includes('LiteX BIOS, available commands')"),
     );
+    drop_files(&mut browser, &page, &[(FILE, mesh())]);
+    let refused = "expected the prompt of the firmware, found none";
+    browser.wait(&page, &format!("{NOTICE}.startsWith('{refused}')"));
 
     // The firmware, its console, and a model.
     press_program(&mut browser, &page, "firmware");
@@ -207,6 +228,20 @@ fn a_board_on_a_port_of_the_browser_is_loaded_and_used() {
         &page,
         &format!("{BUTTON}.textContent === 'Connect a board'"),
     );
+    change(
+        &mut browser,
+        &page,
+        "if (port.readable) throw Error('the port is open')",
+    );
+
+    // The worker of the next connection cannot be loaded: the port is closed, and may be opened again.
+    let broken = "Worker = class extends Worker { constructor() { super('nothing.js', { type: 'module' }); } }; 0";
+    browser.evaluate(&page, broken);
+    press_connect(&mut browser, &page);
+    let stopped = "The board\\'s program on this page has stopped: ";
+    browser.wait(&page, &format!("{NOTICE}.startsWith('{stopped}')"));
+    let free = format!("!{BUTTON}.disabled && {BUTTON}.textContent === 'Connect a board'");
+    browser.wait(&page, &free);
     change(
         &mut browser,
         &page,
