@@ -315,8 +315,8 @@ impl Models {
         Ok(())
     }
 
-    /// Checks that a mesh, a texture or a program of the flash can become an upload with this name. Unlike an upload by the host, the copy must not
-    /// replace another upload, because the demo also makes such copies.
+    /// Checks that a mesh, a texture or a program of the flash can become an upload with this name. Unlike an upload by the host, the copy
+    /// must not replace another upload, because the demo also makes such copies.
     ///
     /// # Errors
     /// [`NameError::OtherKind`] or [`NameError::Full`].

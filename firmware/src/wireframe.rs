@@ -21,8 +21,8 @@ const ARROWS: [Key; 4] = [Key::Up, Key::Down, Key::Left, Key::Right];
 pub struct Keypad {
     debouncer: Debouncer,
     requests: Requests,
-    /// Whether the program is to be read again before the next frame.
-    resets: bool,
+    /// Whether the program must be read again before the next frame.
+    must_reset: bool,
 }
 
 impl Keypad {
@@ -33,12 +33,12 @@ impl Keypad {
         self.debouncer.sample(now_ms, buttons)
     }
 
-    /// Adds the requests of pressed buttons. Buttons 2 and 3 together request that the program is read again, in place of all pending keys:
-    /// a person presses one of the two first, whose step the new start takes back.
+    /// Adds the requests of pressed buttons. Buttons 2 and 3 together request that the program is read again, which replaces all pending
+    /// keys. The button that is pressed first may move the segments by a step before, and the new start undoes this step.
     pub fn press(&mut self, pressed: u8, switches: u16) {
         if pressed & RESET != 0 && self.debouncer.levels() & RESET == RESET {
             self.requests = Requests::default();
-            self.resets = true;
+            self.must_reset = true;
             return;
         }
         let zoom = switches & ZOOM != 0;
@@ -61,12 +61,12 @@ impl Keypad {
 
     /// Removes the request to read the program again, and returns whether there was one.
     pub const fn take_reset(&mut self) -> bool {
-        mem::replace(&mut self.resets, false)
+        mem::replace(&mut self.must_reset, false)
     }
 
     /// Whether a request waits for a frame.
     pub const fn has_request(&self) -> bool {
-        self.resets || !self.requests.is_empty()
+        self.must_reset || !self.requests.is_empty()
     }
 
     /// Whether a button's level is changing, so that the next sample should follow soon.

@@ -4,8 +4,8 @@ use super::command::{find, syntaxes};
 use super::syntax::{Names, Parameter, Shape, WordKind};
 use crate::words::{Word, Words};
 
-/// Calls `offer` with each completion of the last word of `line`; `names` are the names of the machine's scenes, meshes, textures and programs. The
-/// arguments of `offer` are the whole completion and its part that the line does not yet contain.
+/// Calls `offer` with each completion of the last word of `line`; `names` are the names of the machine's scenes, meshes, textures and
+/// programs. The arguments of `offer` are the whole completion and its part that the line does not yet contain.
 pub fn complete(line: &str, names: &dyn Names, offer: &mut dyn FnMut(&str, &str)) {
     let words = Words::new(line);
     // After a blank at the end of the line, the word to complete is a new, empty word.
