@@ -168,8 +168,8 @@ pub fn make(bitstream: &[u8], firmware: &[u8], pieces: &[Piece]) -> Result<Vec<u
     Ok(image)
 }
 
-/// Checks an image: its parts, its checksums, the names of its items, its meshes, textures and wireframe programs, the commands of its scenes, and the names in its
-/// lists.
+/// Checks an image: its parts, its checksums, the names of its items, its meshes, textures and wireframe programs, the commands of its
+/// scenes, and the names in its lists.
 ///
 /// # Errors
 /// The first violation.

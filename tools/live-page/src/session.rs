@@ -325,7 +325,7 @@ impl<'a> Session<'a> {
         let wait = format!(
             "{name}: waiting for the board's BIOS; if this takes long, press the board's reset button"
         );
-        // A page may cancel the wait as soon as it is told of it.
+        // A page may cancel the wait as soon as the notice of it arrives.
         self.board.set_may_cancel(true);
         self.hub.notify(wait, false);
         let mut report = reporter(self.hub);

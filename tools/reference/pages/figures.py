@@ -352,6 +352,8 @@ def index(read, blocks):
     add("sine, cosine", "sine.md", sines.assign(config=sines.kernel + ", " + sines.word_length), in_overview=True)
 
     small = read("kernels")
+    # A logarithm without a cost is a bound, not an alternative.
+    small = small[~small.config.str.startswith("exact logarithm")]
     for family, name, anchor, block, holds in [
         ("reciprocal", "1/x", "reciprocal", "vertex_stage", "of vertices"),
         ("inverse root", "1/√x", "reciprocal-square-root", None, ""),

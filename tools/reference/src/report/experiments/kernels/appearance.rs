@@ -55,7 +55,7 @@ pub fn fogs(thinning: u32) -> Result<Vec<Trial>> {
         let share = |x: f64| hidden(((x / step).floor() + 0.5) * step).round();
         trial(
             "fog_steps",
-            format!("{entries} equal steps"),
+            format!("equal steps: {entries}"),
             false,
             8 * entries,
             sweep(&share),
@@ -70,7 +70,7 @@ pub fn fogs(thinning: u32) -> Result<Vec<Trial>> {
         };
         trial(
             "fog_octaves",
-            format!("{number} steps an octave, exact logarithm"),
+            format!("exact logarithm: {number} steps an octave"),
             false,
             8 * 12 * number,
             sweep(&share),
@@ -79,7 +79,7 @@ pub fn fogs(thinning: u32) -> Result<Vec<Trial>> {
     let mut trials: Vec<_> = [64, 128, 256, 512, 1024].map(steps).into();
     trials.push(trial(
         "fog_field",
-        "32 equal steps, 32 steps in each of 7 octaves, of fields".to_owned(),
+        "growing steps: 64 equal, 32 in each further octave, of fields".to_owned(),
         true,
         8 * 256,
         of_field(sweep)?,
@@ -87,7 +87,7 @@ pub fn fogs(thinning: u32) -> Result<Vec<Trial>> {
     trials.extend([16, 32, 64].map(octaves));
     trials.push(trial(
         "fog_mesh",
-        "128 steps an octave, logarithm of 7 bits, of meshes".to_owned(),
+        "logarithm of 7 bits: 128 steps an octave, of meshes".to_owned(),
         true,
         8 * 12 * 128,
         of_mesh(sweep)?,
@@ -167,9 +167,13 @@ pub fn skies(thinning: u32) -> Result<Vec<Trial>> {
             let share = (high.abs() * steps).floor().min(steps - 1.0) / (steps - 1.0);
             colour(high, share).map(f64::round)
         };
+        let place = match pixels {
+            1 => "each pixel".to_owned(),
+            _ => format!("{pixels} pixels"),
+        };
         trial(
             "sky_group",
-            format!("a colour for {pixels} pixels, share of {bits} bits"),
+            format!("a colour for {place}: share of {bits} bits"),
             false,
             bits,
             sweep(&found),
@@ -178,7 +182,7 @@ pub fn skies(thinning: u32) -> Result<Vec<Trial>> {
     let mut trials = vec![groups(8, 6), groups(16, 8)];
     trials.push(trial(
         "sky",
-        "a colour for 8 pixels, share of 8 bits".to_owned(),
+        "a colour for 8 pixels: share of 8 bits".to_owned(),
         true,
         8,
         sweep(&|x, y| sky.colour(x / 8, y).map(f64::from)),
@@ -267,7 +271,7 @@ pub fn lines(thinning: u32) -> Result<Vec<Trial>> {
         let found = |point| Some(exact(point).map(|x| by(x * unit) / unit));
         trial(
             "line_end_rounded",
-            format!("{bits} fraction bits, {name}"),
+            format!("{name}: {bits} fraction bits"),
             false,
             WHOLE + bits,
             sweep(&found),
@@ -281,7 +285,7 @@ pub fn lines(thinning: u32) -> Result<Vec<Trial>> {
     ];
     trials.push(trial(
         "line_end",
-        "8 fraction bits, to nearest, of a quotient".to_owned(),
+        "to nearest: 8 fraction bits, of a quotient".to_owned(),
         true,
         WHOLE + 8,
         sweep(&|point| {
