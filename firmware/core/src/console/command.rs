@@ -61,7 +61,7 @@ commands! {
         load Load(upload: Upload, name: Option<UploadName>) in UPLOAD: "upload a mesh or a texture (binary) under a name (default model) and show it";
         models Models() in UPLOAD: "list the meshes, the textures, the programs and the memory for uploads";
         unload Unload(name: UploadName) in UPLOAD: "remove an uploaded mesh, texture or program";
-        program Program(action: Option<Program>) in WIREFRAME: "show or upload (binary) a wireframe program; without arguments, show the last one at its start, as buttons 2 and 3 do"
+        program Program(action: Option<Program>) in WIREFRAME: "show or upload (binary) a wireframe program; without arguments, show the last anew, as buttons 2 and 3 do"
             => key(Order::Subject, "cube");
         press Press(key: Key, rotate: Flag) in WIREFRAME: "press a key of the wireframe for one frame: arrow keys pan, or rotate; zoom keys move along z";
     }
