@@ -175,6 +175,7 @@ pub struct Board {
     time: Duration,
     step: Duration,
     pictures: u32,
+    drawing: u64,
     debouncer: Debouncer,
     held: u8,
     pressed: u8,
@@ -208,6 +209,7 @@ impl Board {
             time: Duration::ZERO,
             step: Duration::ZERO,
             pictures: 0,
+            drawing: 0,
             debouncer: Debouncer::default(),
             held: 0,
             pressed: 0,
@@ -250,6 +252,12 @@ impl Board {
     /// Sets the hand; `None` without an image sensor.
     pub(crate) fn set_hand(&mut self, hand: Option<Hand>) {
         self.hand = hand;
+    }
+
+    /// Stores the clock cycles of drawing a picture.
+    #[cfg(target_arch = "riscv32")]
+    pub(crate) const fn set_drawing(&mut self, cycles: u64) {
+        self.drawing = cycles;
     }
 
     /// The buffer into which received bytes are written.
@@ -323,6 +331,27 @@ impl Board {
     /// ```
     pub const fn pictures(&self) -> u32 {
         self.pictures
+    }
+
+    /// Clock cycles of drawing the last picture, without `update`, `paint` and the wait for a free frame buffer; 0 on a host.
+    ///
+    /// ```
+    /// # use glint_program::{Board, Picture, PictureError, Program, host::Host};
+    /// # struct Meter;
+    /// # impl Program for Meter {
+    /// #     fn start(_: &mut Board) -> Self { Self }
+    /// fn update(&mut self, board: &mut Board) {
+    ///     board.show_number(board.drawing());
+    /// }
+    /// #     fn draw<'p>(&'p self, _: &mut Picture<'p>) -> Result<(), PictureError> { Ok(()) }
+    /// # }
+    /// # let mut host = Host::<Meter>::start();
+    /// # host.run(2)?;
+    /// # assert_eq!(host.board().drawing(), 0);
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
+    pub const fn drawing(&self) -> u64 {
+        self.drawing
     }
 
     /// The angle of a motion with this number of turns per second, at the time of the next picture. It is computed from the whole time in

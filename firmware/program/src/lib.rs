@@ -43,6 +43,7 @@
 //! | [`Picture`] | camera, light, meshes, field, lines, rectangles |
 //! | [`Canvas`] | text and shapes of `embedded-graphics` on the drawn picture |
 //! | [`lines`] | segments in space, drawn by the line engine |
+//! | [`triangles`] | triangles in pixels, for other libraries and a program's own geometry |
 //! | [`core`], [`model`], [`scene`] | the crates whose types the interface uses |
 //! | [`host`] | the same program on a host |
 //!
@@ -60,6 +61,7 @@ mod picture;
 mod program;
 pub mod shapes;
 mod soft_core;
+pub mod triangles;
 
 #[cfg(not(target_arch = "riscv32"))]
 pub mod host;

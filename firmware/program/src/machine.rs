@@ -93,6 +93,7 @@ pub fn run<P: Program>() -> ! {
         match drawn {
             Ok(drawn) => {
                 rate = drawn.rate(clock.frequency());
+                board.set_drawing(drawn.cycles);
                 notes.take(&drawn, clock);
             }
             Err(error) => panic::report(format_args!("{error}")),

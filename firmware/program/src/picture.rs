@@ -6,6 +6,7 @@ use glint_core::appearance::Appearance;
 use glint_core::camera::{View, ViewError};
 use glint_core::feature::WIREFRAME;
 use glint_core::field::Field;
+use glint_core::fixed::U4_28;
 use glint_core::light::Background;
 use glint_core::matrix::{Matrix, MatrixError};
 use glint_core::mesh::Mesh;
@@ -17,6 +18,8 @@ use glint_core::wireframe::{Pose, Program, ProgramError};
 use glint_model::{FieldSubject, Frame, MeshSubject, Object, Placement, Subject, WireframeSubject};
 use glint_scene::{Defaults, Sphere};
 use heapless::Vec;
+
+use crate::triangles::Triangles;
 
 /// Largest number of rectangles of a picture.
 ///
@@ -228,6 +231,57 @@ impl<'p> Picture<'p> {
         let added = self.meshes.push(object);
         added.map_err(|_| PictureError::Meshes)?;
         self.meshes.last_mut().ok_or(PictureError::Meshes)
+    }
+
+    /// Adds a list of triangles in pixels, and sets the picture's size and camera for it; lights and fog return to their defaults, so
+    /// triangles have their own colours. Set further options in the result. The engine draws flat shading; smooth shading is drawn by the
+    /// soft core.
+    ///
+    /// ```
+    /// # use glint_program::core::{colour::Rgb565, picture::Size, texture::Blend};
+    /// # use glint_program::{Board, Program, host::Host};
+    /// # use glint_program::triangles::{Triangle, Triangles};
+    /// use glint_program::{Picture, PictureError};
+    ///
+    /// # struct Glass { list: Triangles<2> }
+    /// # impl Program for Glass {
+    /// #     fn start(_: &mut Board) -> Self {
+    /// #         let mut list = Triangles::new();
+    /// #         let corners = [[0, 0], [5120, 0], [0, 2880]];
+    /// #         let triangle = |depth, channel, blend| {
+    /// #             let colour = Rgb565::from_rgb888([0, 1, 2].map(|other| if other == channel { 0xff } else { 0 }));
+    /// #             Triangle { corners, depths: [depth; 3], colours: [colour; 3], blend }
+    /// #         };
+    /// #         list.set(Size::W640, [triangle(2, 0, Blend::Opaque), triangle(1, 2, Blend::ALL[4]), triangle(3, 1, Blend::Opaque)]);
+    /// #         Self { list }
+    /// #     }
+    /// #     fn update(&mut self, _: &mut Board) {}
+    /// /// A blue pane, half of whose colour is that of the red triangle behind it.
+    /// fn draw<'p>(&'p self, picture: &mut Picture<'p>) -> Result<(), PictureError> {
+    ///     picture.triangles(&self.list)?;
+    ///     Ok(())
+    /// }
+    /// # }
+    /// # let mut host = Host::<Glass>::start();
+    /// # host.run(1)?;
+    /// # assert_eq!(host.picture()[0], 0x8010);
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`PictureError::Meshes`] for too many meshes and lists.
+    pub fn triangles<const N: usize>(
+        &mut self,
+        list: &'p Triangles<N>,
+    ) -> Result<&mut Object<'p>, PictureError> {
+        self.view = list.view()?;
+        self.size = list.size();
+        self.appearance.lights.clear();
+        self.appearance.ambient = None;
+        self.appearance.fog = U4_28::ZERO;
+        // Every list is a valid mesh.
+        let mesh = list.mesh().map_err(|_| PictureError::Meshes)?;
+        self.mesh(mesh, Matrix::IDENTITY)
     }
 
     /// Shows a distance field, with rays of this precision.

@@ -212,6 +212,39 @@ fn the_oscilloscope_draws_gravity_and_holds_its_picture() {
 }
 
 #[test]
+fn recorded_commands_are_drawn_as_by_the_rasteriser_of_their_crate() {
+    /// The background of the program.
+    const BACKGROUND: Rgb565 = Rgb565::from_rgb888([24, 36, 56]);
+    let mut board = start("commands");
+    for scene in ["three cubes", "three spheres", "cube of lines"] {
+        // The time stands still while button 0 is down.
+        run_for(&mut board, 1, 20);
+        let [own, engine] = [1, 2].map(|switches| {
+            board.inner().set_switches(switches);
+            let frame = run_for(&mut board, 1, 210);
+            let text = said(&mut board);
+            let line = text.lines().last().unwrap();
+            assert!(line.contains(scene) && line.contains("320x180"), "{line}");
+            // The number before a text.
+            let cycles = |unit| {
+                let before = line.split_once(unit).unwrap().0;
+                before.rsplit_once(' ').unwrap().1.parse::<u32>().unwrap()
+            };
+            (frame, cycles(" to convert") + cycles(" to draw"))
+        });
+        let drawn = count(&engine.0, |colour| colour != BACKGROUND.to_rgb888());
+        let pairs = own.0.pixels.iter().zip(&engine.0.pixels);
+        let different = pairs.filter(|(own, engine)| own != engine).count();
+        // The rasteriser also draws the pixels on the lower and right edges.
+        assert!(drawn > 400, "{scene}: {drawn} pixels");
+        assert!(different < 800, "{scene}: {different} pixels differ");
+        assert!(own.1 > 5 * engine.1, "{scene}: {} and {}", own.1, engine.1);
+        // Button 3 shows the next scene.
+        run_for(&mut board, 9, 20);
+    }
+}
+
+#[test]
 fn faults_are_told_by_name_and_enter_restarts() {
     let mut board = start("faults");
     let mut places = Places::new(elf("faults"));
@@ -414,7 +447,7 @@ fn a_new_project_shows_its_program_in_the_page() {
 }
 
 /// The programs of docs/program-sizes.md, with the buttons that are held for their pictures.
-const PROGRAMS: [(&str, u8); 7] = [
+const PROGRAMS: [(&str, u8); 8] = [
     ("cube", 0),
     ("solar", 0),
     ("flight", 0),
@@ -422,6 +455,7 @@ const PROGRAMS: [(&str, u8); 7] = [
     ("hand", 0),
     ("kernel", 0),
     ("scope", 0),
+    ("commands", 0),
 ];
 
 /// A shaken sensor: damped swings along x and y, gravity along z.

@@ -13,14 +13,23 @@ use litex_pac::memories::MAIN_RAM;
 use crate::firmware::{TARGET, write};
 use crate::{paths, run};
 
-/// Builds every program of `firmware/examples`.
+/// The packages of programs, with the folders of their sources.
+const PACKAGES: [(&str, &str); 2] = [
+    ("glint-program", "firmware/examples"),
+    ("glint-embedded-3dgfx", "firmware/embedded-3dgfx/examples"),
+];
+
+/// Builds every example program.
 ///
 /// # Errors
 /// A program does not compile, or is not a program for the virtual board.
 pub fn build() -> Result<()> {
     let built = paths::target().join("firmware-build");
     let mut cargo = Command::new("cargo");
-    cargo.args(["build", "--package", "glint-program", "--examples"]);
+    cargo.args(["build", "--examples"]);
+    for (package, _) in PACKAGES {
+        cargo.args(["--package", package]);
+    }
     cargo.args(["--profile", "firmware", "--target", TARGET]);
     cargo.arg("--target-dir").arg(&built);
     cargo.current_dir(paths::root());
@@ -49,18 +58,19 @@ pub fn folder() -> PathBuf {
 /// The names of the programs, in order.
 ///
 /// # Errors
-/// The folder of the sources cannot be read.
+/// A folder of the sources cannot be read.
 pub fn names() -> Result<Vec<String>> {
-    let folder = paths::root().join("firmware/examples");
-    let files = fs::read_dir(&folder).with_context(|| format!("reading {}", folder.display()))?;
     let mut names = Vec::new();
-    for file in files {
-        let path = file?.path();
-        if path.extension().is_some_and(|extension| extension == "rs") {
-            names.extend(
-                path.file_stem()
-                    .map(|name| name.to_string_lossy().into_owned()),
-            );
+    for (_, folder) in PACKAGES {
+        let files = fs::read_dir(paths::root().join(folder));
+        for file in files.with_context(|| format!("reading {folder}"))? {
+            let path = file?.path();
+            if path.extension().is_some_and(|extension| extension == "rs") {
+                names.extend(
+                    path.file_stem()
+                        .map(|name| name.to_string_lossy().into_owned()),
+                );
+            }
         }
     }
     names.sort();
