@@ -1,13 +1,13 @@
 //! `glint board`.
 
-use super::common::{LineArguments, bad_value};
+use super::common::{LineArguments, Unsynchronised, bad_value};
 use super::messages::{note, say, warn};
 use super::output::Output;
 use super::progress::{show_simulation, spinner};
-use super::terminal::talk;
+use super::terminal::{print_output, talk};
 use anyhow::Context;
 use clap::Args;
-use glint::board::{self, AnyBoard, BoardName, SerialBoard};
+use glint::board::{self, AnyBoard, BoardName};
 use glint::console::BIOS_PROMPT;
 use glint::error::quote;
 use glint::formats::read_up_to;
@@ -30,6 +30,8 @@ use virtual_board::virtual_flash::{Flash, MAX_BYTES};
 const PROMPTS: [&[u8]; 2] = [PROMPT.as_bytes(), BIOS_PROMPT];
 
 /// Run a board until Ctrl-C, for programs or in a web page: print its serial port or the page's address.
+///
+/// With --firmware, a board on a serial port is loaded by its BIOS, and its console opens.
 ///
 /// Without --web, any program that uses serial ports can open the port, one program at a time: `glint … --board PORT`,
 /// litex_term, a script. Several boards run side by side. On a terminal without --pty and --ready-file, the board's console opens
@@ -61,7 +63,7 @@ pub struct BoardArguments {
     /// Only for the emulated board; port 0 selects a free port [default: 127.0.0.1:3333].
     #[arg(long, value_name = "ADDR", num_args = 0..=1, default_missing_value = "127.0.0.1:3333", conflicts_with_all = ["bios", "flash"])]
     gdb: Option<SocketAddr>,
-    /// Board: `emulated`, or `virtual` (the verilated SoC), which is slow; with --web also a serial port.
+    /// Board: `emulated`, or `virtual` (the verilated SoC), which is slow; with --web or --firmware also a serial port.
     #[arg(long, default_value = "emulated")]
     board: BoardName,
     #[command(flatten)]
@@ -70,7 +72,7 @@ pub struct BoardArguments {
 
 impl BoardArguments {
     pub fn run(self) -> anyhow::Result<()> {
-        self.line.check(&self.board)?;
+        self.line.baud.check(&self.board)?;
         if self.gdb.is_some() && self.board != BoardName::Emulated {
             let found = quote(self.board.to_string().as_bytes());
             return Err(bad_value("--board with --gdb", "emulated", found).into());
@@ -78,11 +80,10 @@ impl BoardArguments {
         if let Some(address) = self.web {
             return self.serve(address);
         }
-        if let BoardName::Serial(port) = &self.board {
-            let expected = "emulated or virtual, or --web";
-            return Err(bad_value("--board", expected, quote(port.as_bytes())).into());
+        match &self.board {
+            BoardName::Serial(port) => self.run_on(port),
+            _ => self.stay(),
         }
-        self.stay()
     }
 
     /// Opens the file of `--ready-file`.
@@ -93,8 +94,11 @@ impl BoardArguments {
     /// Serves the live page.
     fn serve(&self, address: SocketAddr) -> anyhow::Result<()> {
         let ready = self.ready()?;
-        let watched = self.line.firmware.clone().filter(|_| self.watch);
-        let watched = watched.map(Watched::new);
+        let watched = self.line.firmware.clone();
+        let watched = watched.and_then(|path| match self.board {
+            BoardName::Serial(_) => Some(Watched::to_load(path, self.watch)),
+            _ => self.watch.then(|| Watched::loaded(path)),
+        });
         let server = Server::bind(address).with_context(|| format!("--web {address}"))?;
         let mut board: Box<dyn Live> = match &self.board {
             // The page finds the board's firmware, or loads it.
@@ -120,6 +124,35 @@ impl BoardArguments {
         }
         let _ready = ready.map(|ready| ready.write(&url)).transpose()?;
         Ok(server.run(&mut *board, &self.board.to_string(), watched, &stop)?)
+    }
+
+    /// Loads the program onto a board on a serial port, and opens its console, or without a terminal prints its output, until Ctrl-C.
+    fn run_on(&self, port: &str) -> anyhow::Result<()> {
+        for (is_given, option) in [
+            (self.pty.is_some(), "--pty"),
+            (self.ready_file.is_some(), "--ready-file"),
+            (self.bios, "--bios"),
+            (self.flash.is_some(), "--flash"),
+        ] {
+            if is_given {
+                let found = quote(port.as_bytes());
+                return Err(bad_value(
+                    &format!("--board with {option}"),
+                    "emulated or virtual",
+                    found,
+                )
+                .into());
+            }
+        }
+        if self.line.firmware.is_none() {
+            let expected = "emulated or virtual, or --web or --firmware";
+            return Err(bad_value("--board", expected, quote(port.as_bytes())).into());
+        }
+        let mut opened = self.line.loaded(port)?;
+        if isatty(std::io::stdin()) {
+            return talk(&mut opened, || false);
+        }
+        print_output(opened)
     }
 
     /// Starts the board with its program, and with `--gdb` for a debugger.
@@ -180,10 +213,13 @@ impl BoardArguments {
         if self.pty.is_none() && self.ready_file.is_none() && isatty(std::io::stdin()) {
             let port = port.to_string_lossy();
             let is_ended = || events.try_iter().any(|event| matches!(event, Event::End));
-            return talk(
-                &mut SerialBoard::open(&port, self.line.baud.rate()?)?,
-                is_ended,
-            );
+            let mut opened = Unsynchronised {
+                board: self.line.open(&port)?,
+                // The watcher of the port prints them.
+                places: Places::default(),
+                said: Vec::new(),
+            };
+            return talk(&mut opened, is_ended);
         }
         // A prompt ends the spinner, and a firmware need not print one, so only a start with the
         // BIOS has a spinner.

@@ -1,6 +1,7 @@
 //! Options that several commands share, and their access to boards.
 
 use super::config;
+use super::loading::Loading;
 use super::progress::{show_simulation, spinner};
 use anyhow::Context;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -98,24 +99,16 @@ impl Baud {
 pub struct LineArguments {
     #[command(flatten)]
     pub baud: Baud,
-    /// Firmware of the emulated or the virtual board, an ELF file or a flat binary [default: the firmware of `cargo xtask firmware`].
+    /// Program of the board, an ELF file or a flat binary: a simulated board starts with it, and the BIOS of a board on a serial port loads
+    /// it [default: the firmware of `cargo xtask firmware`; of a serial port, the program that runs].
     #[arg(long, value_name = "FILE")]
     pub firmware: Option<PathBuf>,
 }
 
 impl LineArguments {
-    /// Rejects options that do not apply to the board `name`.
-    pub fn check(&self, name: &BoardName) -> Result<(), InputError> {
-        if self.firmware.is_some() && !name.is_simulated() {
-            let expected = "the emulated or the virtual board";
-            return Err(bad_value("--firmware", expected, format!("--board {name}")));
-        }
-        self.baud.check(name)
-    }
-
     /// Opens a board on a serial port, and cancels an unfinished command or transfer of an earlier program.
     pub fn serial_board(&self, port: &str) -> anyhow::Result<SerialBoard> {
-        let mut board = self.open(port)?;
+        let mut board = self.loaded(port)?.board;
         let spinner = spinner("waiting for the board");
         Console::new(&mut board).synchronise()?;
         spinner.finish();
@@ -125,18 +118,51 @@ impl LineArguments {
     /// Opens a serial port. The firmware of its board may not be running yet.
     ///
     /// # Errors
-    /// The options do not apply to a serial port, or it cannot be opened.
+    /// The port cannot be opened.
     pub fn open(&self, port: &str) -> anyhow::Result<SerialBoard> {
-        self.check(&BoardName::Serial(port.to_owned()))?;
         Ok(SerialBoard::open(port, self.baud.rate()?)?)
     }
 
-    /// Opens the board `name`. The firmware of a board on a serial port may not be running yet.
-    pub fn unsynchronised_board(&self, name: &BoardName) -> anyhow::Result<Box<dyn Board>> {
-        match name {
-            BoardName::Serial(port) => Ok(Box::new(self.open(port)?)),
-            BoardName::Emulated | BoardName::Virtual => self.board(name),
+    /// Opens a serial port, and loads the program of `--firmware`, if it is given.
+    ///
+    /// # Errors
+    /// The port cannot be opened, or the program cannot be read or loaded.
+    pub fn loaded(&self, port: &str) -> anyhow::Result<Unsynchronised<SerialBoard>> {
+        let program = self.firmware.as_deref().map(program::read).transpose()?;
+        let mut board = self.open(port)?;
+        let (said, places) = match program {
+            Some(Program { image, places }) => {
+                (Loading::SILENT.load(&mut board, &image)?.said, places)
+            }
+            None => Default::default(),
+        };
+        Ok(Unsynchronised {
+            board,
+            places,
+            said,
+        })
+    }
+
+    /// Opens the board `name`. Its firmware may not be running yet, and its program may have no prompt.
+    pub fn unsynchronised_board(
+        &self,
+        name: &BoardName,
+    ) -> anyhow::Result<Unsynchronised<Box<dyn Board>>> {
+        if let BoardName::Serial(port) = name {
+            let loaded = self.loaded(port)?;
+            return Ok(Unsynchronised {
+                board: Box::new(loaded.board),
+                places: loaded.places,
+                said: loaded.said,
+            });
         }
+        self.baud.check(name)?;
+        let (board, places) = self.start(name)?;
+        Ok(Unsynchronised {
+            board: Box::new(board),
+            places,
+            said: Vec::new(),
+        })
     }
 
     /// Opens the board `name`. A simulated board is started, and runs its firmware.
@@ -175,15 +201,24 @@ impl LineArguments {
 
     /// Opens the board `name` like [`board`](Self::board), but returns the board's type too.
     pub fn open_any(&self, name: &BoardName) -> anyhow::Result<Opened> {
-        self.check(name)?;
         if let BoardName::Serial(port) = name {
             return Ok(Opened::Serial(self.serial_board(port)?));
         }
+        self.baud.check(name)?;
         let (mut board, _) = self.start(name)?;
         let _starting = spinner("the board starts");
         Console::new(&mut board).greet()?;
         Ok(Opened::Simulated(board))
     }
+}
+
+/// A board whose program may not wait for a command.
+pub struct Unsynchronised<B> {
+    pub board: B,
+    /// The source locations of the program of `--firmware`.
+    pub places: Places,
+    /// The output of the BIOS and the program so far.
+    pub said: Vec<u8>,
 }
 
 /// A board whose firmware waits for a command.

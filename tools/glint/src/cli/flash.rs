@@ -3,8 +3,9 @@
 use super::common::{Baud, LineArguments, bad_value};
 use super::config::BoardChoice;
 use super::convert::load;
+use super::loading::{Loading, WAIT_SECONDS};
 use super::messages::{note, print_json, say, warn};
-use super::progress::{advance, bar, show_simulation, spinner};
+use super::progress::{advance, bar, show_simulation};
 use super::texture::{MeshTextureArguments, load_texture, print_textures};
 use super::wireframe::read as read_program;
 use anyhow::Context;
@@ -12,7 +13,6 @@ use clap::Args;
 use glint::board::{self, Board, SerialBoard};
 use glint::console::Console;
 use glint::convert::{Options, TextureReport};
-use glint::flash;
 use glint::formats::read_up_to;
 use glint::image;
 use glint::model::board_name;
@@ -53,7 +53,7 @@ pub struct FlashArguments {
     no_output: bool,
     /// Longest wait for the BIOS's request, in seconds of the board's time. The BIOS sends the
     /// request after a reset and after the command `reboot`, which the host sends.
-    #[arg(long, default_value_t = 60, value_name = "SECONDS")]
+    #[arg(long, default_value_t = WAIT_SECONDS, value_name = "SECONDS")]
     wait: u64,
     #[command(flatten)]
     baud: Baud,
@@ -98,8 +98,6 @@ fn mesh_name(text: &str) -> Result<String, String> {
 
 /// Addresses of main memory on every board.
 const MAIN_MEMORY: RangeInclusive<u32> = 0x4000_0000..=0x7fff_fffc;
-/// Longest wait for the first text of a program, in milliseconds of the board's time.
-const START_MS: u64 = 10_000;
 
 fn parse_address(text: &str) -> Result<u32, String> {
     let digits = text
@@ -129,24 +127,12 @@ impl FlashArguments {
             }
             None => Box::new(SerialBoard::open(&name.to_string(), self.baud.rate()?)?),
         };
-        let waiting = spinner("waiting for the BIOS");
-        let bar = bar("program");
-        let report = flash::flash(
-            &mut *board,
-            &program,
-            self.address,
-            self.wait * 1000,
-            &mut |done, all| {
-                waiting.finish();
-                advance(&bar)(done, all);
-            },
-        )?;
-        bar.finish();
-        if !self.no_output {
-            let starting = spinner("waiting for the program's text");
-            flash::await_text(&mut *board, &report.said, START_MS)?;
-            starting.finish();
-        }
+        let loading = Loading {
+            address: self.address,
+            wait_ms: self.wait * 1000,
+            has_output: !self.no_output,
+        };
+        let report = loading.load(&mut *board, &program)?;
         if self.json {
             return print_json(&report);
         }

@@ -14,6 +14,7 @@ mod heading;
 mod image;
 mod imu;
 mod info;
+mod loading;
 mod man;
 mod messages;
 mod new;

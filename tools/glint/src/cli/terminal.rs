@@ -1,15 +1,16 @@
 //! `glint console`.
 
-use super::common::LineArguments;
+use super::common::{LineArguments, Unsynchronised};
 use super::config;
-use super::messages::{print_json, say};
+use super::messages::{note, print_json, say};
 use super::output::Output;
 use anyhow::Context;
 use clap::Args;
 use clap::builder::NonEmptyStringValueParser;
-use glint::board::{Board, BoardError, BoardName, Memory};
+use glint::board::{Board, BoardError, BoardName, Memory, SerialBoard};
 use glint::console::{self, Console};
 use glint::error::{MAX_LINE, quote};
+use glint_live_page::Places;
 use rustix::termios::{OptionalActions, Termios, isatty, tcgetattr, tcsetattr};
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Write};
@@ -71,9 +72,9 @@ impl ConsoleArguments {
             None if !self.send.is_empty() => Box::new(self.send.iter().cloned().map(Ok)),
             None if isatty(std::io::stdin()) => {
                 anyhow::ensure!(!self.json, "--json: expected commands, found a terminal");
-                let mut board = self.line.unsynchronised_board(&board)?;
-                let mut heard = self.heard(&mut *board, log);
-                return interact(&mut heard, || false);
+                let mut opened = self.line.unsynchronised_board(&board)?;
+                let mut heard = self.heard(&mut *opened.board, log);
+                return interact(&mut heard, opened.places, &opened.said, || false);
             }
             _ => Box::new(commands(std::io::stdin().lock())),
         };
@@ -269,9 +270,12 @@ fn keys() -> Receiver<Vec<u8>> {
 }
 
 /// Connects the terminal to a board until the user ends the session, or `is_ended` returns true.
-pub fn talk(board: &mut dyn Board, is_ended: impl FnMut() -> bool) -> anyhow::Result<()> {
+pub fn talk(
+    opened: &mut Unsynchronised<SerialBoard>,
+    is_ended: impl FnMut() -> bool,
+) -> anyhow::Result<()> {
     let mut heard = Heard {
-        board,
+        board: &mut opened.board,
         log: None,
         until: None,
         last: Vec::new(),
@@ -279,14 +283,34 @@ pub fn talk(board: &mut dyn Board, is_ended: impl FnMut() -> bool) -> anyhow::Re
         is_printed: false,
         end_ms: None,
     };
-    interact(&mut heard, is_ended)
+    let places = std::mem::take(&mut opened.places);
+    interact(&mut heard, places, &opened.said, is_ended)
 }
 
-/// Passes the output that the board sent before the session to the terminal, without searching it for the text of `--until`.
-fn print_earlier(board: &mut Heard) -> anyhow::Result<()> {
+/// Prints the output of a board, and the source location when its program ends with a message, until the connection fails or a signal ends
+/// the process.
+pub fn print_output(opened: Unsynchronised<SerialBoard>) -> anyhow::Result<()> {
+    let Unsynchronised {
+        mut board,
+        mut places,
+        said: mut received,
+    } = opened;
+    let mut output = std::io::stdout();
+    loop {
+        output.write_all(&received)?;
+        output.flush()?;
+        places.hear(&received).into_iter().for_each(note);
+        received.clear();
+        board.read(&mut received, POLL_MS)?;
+    }
+}
+
+/// Passes the output that the board sent before the session to the terminal, without searching it for the text of `--until`. `said` is the
+/// part that has been read.
+fn print_earlier(board: &mut Heard, said: &[u8]) -> anyhow::Result<()> {
     let until = board.until.take();
     let end_ms = board.now_ms() + EARLIER_MS;
-    let mut earlier = Vec::new();
+    let mut earlier = said.to_vec();
     while board.now_ms() < end_ms {
         let before = earlier.len();
         board.read(&mut earlier, POLL_MS)?;
@@ -301,22 +325,34 @@ fn print_earlier(board: &mut Heard) -> anyhow::Result<()> {
 }
 
 /// Connects the terminal to a board until the user ends the session, the board prints the text of `--until`, or `is_ended` returns
-/// true.
-fn interact(board: &mut Heard, mut is_ended: impl FnMut() -> bool) -> anyhow::Result<()> {
+/// true. When the program ends with a message, its source location follows.
+fn interact(
+    board: &mut Heard,
+    mut places: Places,
+    said: &[u8],
+    mut is_ended: impl FnMut() -> bool,
+) -> anyhow::Result<()> {
     eprintln!("Ctrl-] ends the console.");
     let _raw = RawTerminal::enter()?;
     let keys = keys();
     let mut output = std::io::stdout();
     let mut received = Vec::new();
-    print_earlier(board)?;
-    let mut console = Console::new(board);
-    console.end_boot()?;
-    console.reset_transfer()?;
-    // An empty line makes the board print its prompt.
-    board.write(b"\r")?;
+    print_earlier(board, said)?;
+    // A program that has just been loaded is in no boot and no transfer.
+    if said.is_empty() {
+        let mut console = Console::new(board);
+        console.end_boot()?;
+        console.reset_transfer()?;
+        // An empty line makes the board print its prompt.
+        board.write(b"\r")?;
+    }
     while !is_ended() {
         board.read(&mut received, POLL_MS)?;
         output.write_all(&received)?;
+        if let Some(place) = places.hear(&received) {
+            // In raw mode a line feed does not return to the start of the line.
+            write!(output, "{place}\r\n")?;
+        }
         output.flush()?;
         received.clear();
         if board.is_over()? {

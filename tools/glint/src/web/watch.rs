@@ -1,4 +1,4 @@
-//! Starts a program again whenever its file changes.
+//! Starts a program from its file, and again whenever the file changes.
 
 use crate::program;
 use glint_live_page::channels::{Channels, Program};
@@ -23,17 +23,33 @@ pub struct Watched {
     path: PathBuf,
     /// The stamp of the file from which the running program was read.
     known: Stamp,
+    /// Whether only the first program is started.
+    is_once: bool,
 }
 
 impl Watched {
-    /// Watches the file at `path` for changes from now on. Call this before the program is read, so that no change is missed.
+    /// Watches the file of the running program for changes from now on. Call this before the program is read, so that no change is missed.
     #[must_use]
-    pub fn new(path: PathBuf) -> Self {
+    pub fn loaded(path: PathBuf) -> Self {
         let known = stamp(&path);
-        Self { path, known }
+        Self {
+            path,
+            known,
+            is_once: false,
+        }
     }
 
-    /// Polls the file in an endless loop. After a change, and when two polls in a row have found the same stamp, starts the new program on
+    /// Starts the program at `path`, and with `is_watched` again whenever its file changes.
+    #[must_use]
+    pub fn to_load(path: PathBuf, is_watched: bool) -> Self {
+        Self {
+            path,
+            known: None,
+            is_once: !is_watched,
+        }
+    }
+
+    /// Polls the file, in an endless loop if it is watched. After a change, and when two polls in a row have found the same stamp, starts the new program on
     /// the board, or sends the pages the reason why the file is not a program.
     pub(super) fn watch(mut self, channels: &Channels) {
         let mut last = self.known;
@@ -57,6 +73,9 @@ impl Watched {
                     });
                 }
                 Err(error) => channels.hub.notify(error.to_string(), true),
+            }
+            if self.is_once {
+                return;
             }
         }
     }

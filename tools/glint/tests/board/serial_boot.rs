@@ -12,7 +12,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use virtual_board::pty::Pty;
-use virtual_board::{Start, VirtualBoard};
+use virtual_board::{Simulation, Start, VirtualBoard};
 
 /// Time-out of a test on the verilated board in its clock cycles: several times the duration of the test.
 const LIMIT: u64 = 400_000_000;
@@ -106,6 +106,26 @@ fn litex_term_loads_the_firmware_into_the_emulated_board() {
     terminal.wait_for("glint> ", &mut is_over);
     terminal.type_in(b"info triangles\r");
     terminal.wait_for("triangles 12", &mut is_over);
+}
+
+#[test]
+fn glint_board_loads_a_program_by_the_port_and_locates_its_faults() {
+    let board = Pty::start(board::emulated_bios().unwrap()).unwrap();
+    let port = board.path().to_str().unwrap();
+    let program = root().join("target/firmware/programs/faults.elf");
+    let program = program.to_str().unwrap();
+    let arguments = ["board", "--board", port, "--firmware", program];
+    let glint = Path::new(env!("CARGO_BIN_EXE_glint"));
+    let mut terminal = Terminal::start(glint, &arguments);
+    let mut is_over = || board.with(|board| board.inner().cycles()) >= EMULATED_LIMIT;
+    terminal.wait_for("switches 0 to 4", &mut is_over);
+    // Switch 4 executes an illegal instruction.
+    board.with(|board| board.inner().set_switches(1 << 4));
+    terminal.wait_for("press Enter to restart", &mut is_over);
+    terminal.wait_for("examples/faults.rs:", &mut is_over);
+    // A restart returns to the BIOS, because the flash has no program.
+    terminal.type_in(b"\r");
+    terminal.wait_for("Booting from serial", &mut is_over);
 }
 
 #[test]

@@ -116,17 +116,12 @@ fn options_of_another_board() {
         .into_iter()
         .flat_map(|command| of_a_board.clone().map(move |option| (command, option)))
         .chain(of_the_line.map(|option| (replay, option)));
-    let [port, simulated] = ["a serial port", "the emulated or the virtual board"];
+    let port = "a serial port";
     let by_a_board = [
         ("console emulated --send info", "--baud 9600", port),
         ("info", "--baud 9600", port),
         ("board --board virtual", "--baud 9600", port),
         ("flash log.csv --board virtual", "--baud 9600", port),
-        (
-            "upload cube --board /dev/x",
-            "--firmware log.csv",
-            simulated,
-        ),
     ];
     let by_the_model = by_the_model.map(|(command, option)| (command, option, "a board"));
     for (command, option, expected) in by_the_model.chain(by_a_board) {

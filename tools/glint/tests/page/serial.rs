@@ -81,3 +81,14 @@ fn a_board_in_its_bios_is_loaded_from_the_page() {
     socket.send(Message::text(stop)).unwrap();
     wait_for(&mut socket, "kernel.bin: stopped");
 }
+
+#[test]
+fn the_page_loads_the_program_of_its_option() {
+    let port = Served::start_with("page-option-bios", &["--bios"]);
+    let kernel = built::find("firmware/programs/kernel.elf", "cargo xtask programs").unwrap();
+    let kernel = kernel.to_str().unwrap();
+    let arguments = ["--web", "--board", &port.url, "--firmware", kernel];
+    let served = Served::start_with("page-option", &arguments);
+    let mut socket = served.viewer();
+    wait_for(&mut socket, "newton: ");
+}
