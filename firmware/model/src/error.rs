@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use glint_core::fixed::{Q32_32, U4_28, U8_28};
+use glint_core::fixed::{Decimal, Q32_32, U4_28, U8_28};
 use glint_core::object::MAX_OBJECTS;
 use glint_core::picture::{Size, Window};
 
@@ -138,29 +138,38 @@ impl fmt::Display for RenderError {
                 f,
                 "edges of {triangles} triangles: expected fewer triangles, to fit the memory for edges"
             ),
-            Self::Eye([x, y, z]) => write!(
-                f,
-                "eye ({x}, {y}, {z}): expected within {MAX_EYE} of the origin for a mesh"
-            ),
-            Self::Near { near, least } => write!(
-                f,
-                "near {near}: expected at least {least} for a mesh of this size in a picture of this width and field of view"
-            ),
-            Self::Far(far) => write!(f, "far {far}: expected a plane beyond the near plane"),
-            Self::Width { width, least } => write!(
-                f,
-                "width {width}: expected at least {least} for an object of this size in a picture of this width"
-            ),
+            Self::Eye(eye) => {
+                let [x, y, z] = eye.map(Decimal);
+                write!(f, "eye ({x}, {y}, {z}): expected within {MAX_EYE} of the origin for a mesh")
+            }
+            Self::Near { near, least } => {
+                let [near, least] = [*near, *least].map(Decimal);
+                write!(
+                    f,
+                    "near {near}: expected at least {least} for a mesh of this size in a picture of this width and field of view"
+                )
+            }
+            Self::Far(far) => {
+                let far = Decimal(*far);
+                write!(f, "far {far}: expected a plane beyond the near plane")
+            }
+            Self::Width { width, least } => {
+                let [width, least] = [*width, *least].map(Decimal);
+                write!(
+                    f,
+                    "width {width}: expected at least {least} for an object of this size in a picture of this width"
+                )
+            }
             Self::Orthographic => {
                 f.write_str("orthographic projection: expected perspective with a field or two eyes, set by a field of view")
             }
-            Self::HalfWidth(half_width) => write!(
-                f,
-                "half_width {half_width}: expected {} to {} with a field",
-                FIELD_HALF_WIDTH[0], FIELD_HALF_WIDTH[1]
-            ),
+            Self::HalfWidth(half_width) => {
+                let [found, least, most] =
+                    [*half_width, FIELD_HALF_WIDTH[0], FIELD_HALF_WIDTH[1]].map(Decimal);
+                write!(f, "half_width {found}: expected {least} to {most} with a field")
+            }
             Self::Sides => {
-                let [least, most] = FIELD_HALF_WIDTH;
+                let [least, most] = FIELD_HALF_WIDTH.map(Decimal);
                 write!(f, "window: expected sides within {most} of the camera's axis, and a half height of at least 9/16 * {least}, with a field")
             }
             Self::Window => f.write_str(

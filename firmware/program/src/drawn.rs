@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use glint_core::feature::CPU;
+use glint_core::feature::{CPU, STEREO};
 use glint_hal::frequency::Frequency;
 use glint_hal::triangle::Counters;
 use glint_model::{FrameStats, RenderError};
@@ -59,7 +59,9 @@ pub enum DrawError {
 impl fmt::Display for DrawError {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Self::Render(error) => error.fmt(f),
+            // Only these parts draw frames by the model.
+            Self::Render(error) if CPU.is_built || STEREO.is_built => error.fmt(f),
+            Self::Render(_) => Ok(()),
             Self::NoCpu(None) => CPU.fmt(f),
             Self::NoCpu(Some(fallback)) => write!(f, "{fallback}; {CPU}"),
         }

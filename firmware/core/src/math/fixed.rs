@@ -6,6 +6,8 @@
 //! nearest with ties to even, and rejects out-of-range numbers. `Display` prints the shortest decimal that reads back as the same
 //! bits.
 
+use core::fmt;
+
 pub use ::fixed;
 use ::fixed::types::extra::{LeEqU32, LeEqU64, U11, U12, U14, U16, U20, U23, U24, U28, U30, U32};
 use ::fixed::{FixedI16, FixedI32, FixedI64, FixedU16, FixedU32, FixedU64};
@@ -83,6 +85,66 @@ impl core::ops::Neg for Turns {
     }
 }
 
+/// A number in a message: prints what the number's own `Display` prints without width and precision, by a sixth of its code. A small program
+/// contains no other formatter of such numbers.
+#[derive(Clone, Copy, Debug)]
+pub struct Decimal<T>(pub T);
+
+/// Implements `Display` for numbers of a type of the [`fixed`] crate.
+macro_rules! decimals {
+    ($($number:ident<$bits:ident>, $is_negative:expr, $magnitude:expr;)+) => {
+        $(
+            impl<F: $bits> fmt::Display for Decimal<$number<F>> {
+                fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                    let bits = self.0.to_bits();
+                    write_decimal(f, $is_negative(bits), $magnitude(bits).into(), F::U32)
+                }
+            }
+        )+
+    };
+}
+
+decimals! {
+    FixedI32<LeEqU32>, i32::is_negative, i32::unsigned_abs;
+    FixedI64<LeEqU64>, i64::is_negative, i64::unsigned_abs;
+    FixedU32<LeEqU32>, |_| false, u32::from;
+    FixedU64<LeEqU64>, |_| false, u64::from;
+}
+
+/// Writes the shortest decimal that is nearest to a number with at most 32 fraction bits.
+// The only copy of this code for all formats.
+#[inline(never)]
+fn write_decimal(
+    f: &mut fmt::Formatter,
+    is_negative: bool,
+    bits: u64,
+    fraction: u32,
+) -> fmt::Result {
+    let sign = if is_negative { "-" } else { "" };
+    write!(f, "{sign}{}", bits >> fraction)?;
+    // In halves of the number's unit.
+    let one = 2 << fraction;
+    let mut rest = 2 * (bits & ((1 << fraction) - 1));
+    if rest == 0 {
+        return Ok(());
+    }
+    let (mut digits, mut count, mut half_unit) = (0, 0, 1_u64);
+    // Ends when a half unit, times a power of ten, exceeds a half, so all numbers fit 64 bits.
+    loop {
+        rest *= 10;
+        half_unit *= 10;
+        digits = 10 * digits + (rest >> fraction >> 1);
+        rest &= one - 1;
+        count += 1;
+        if rest < half_unit || one - rest < half_unit {
+            break;
+        }
+    }
+    // To nearest, ties to even. A number with a carry to the previous digit would have ended the loop before.
+    digits += u64::from(rest > one / 2 || rest == one / 2 && digits % 2 == 1);
+    write!(f, ".{digits:0count$}")
+}
+
 /// Reads a decimal as `FromStr` does; `None` for a malformed or out-of-range number.
 ///
 /// All formats read numbers with 64 bits, so that the firmware has one function for integer parts.
@@ -93,4 +155,56 @@ pub(crate) fn parse_i32<F: LeEqU32 + LeEqU64>(text: &str) -> Option<FixedI32<F>>
 /// Returns the exact product of two 32-bit numbers.
 pub(crate) const fn wide(a: i32, b: i32) -> i64 {
     a as i64 * b as i64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::format;
+
+    fn check<T: Copy + fmt::Display>(number: T)
+    where
+        Decimal<T>: fmt::Display,
+    {
+        assert_eq!(format!("{}", Decimal(number)), format!("{number}"));
+    }
+
+    #[test]
+    fn decimals_equal_those_of_the_crate() {
+        let mut state = 1_u64;
+        let mut random = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            // Random numbers of all lengths.
+            state.rotate_right(29) >> (state >> 58)
+        };
+        let ends = [
+            0,
+            1,
+            u64::MAX,
+            u64::MAX >> 1,
+            1 << 63,
+            1 << 31,
+            1 << 32,
+            0x7FFF_FFFF,
+            0xFFFF_FFFF,
+        ];
+        let numbers = (0..100_000).map(|_| random()).collect::<std::vec::Vec<_>>();
+        for bits in ends
+            .into_iter()
+            .chain(numbers.iter().copied())
+            .chain(numbers.iter().map(|bits| !bits))
+        {
+            check(Q32_32::from_bits(bits.cast_signed()));
+            check(U32_32::from_bits(bits));
+            check(U8_28::from_bits(bits));
+            check(Q2_23::from_bits(bits as i32));
+            check(Q8_24::from_bits(bits as i32));
+            check(Q2_30::from_bits(bits as i32));
+            check(Q12_20::from_bits(bits as i32));
+            check(U4_28::from_bits(bits as u32));
+            check(U20_12::from_bits(bits as u32));
+        }
+    }
 }

@@ -7,7 +7,7 @@
 use core::fmt;
 
 use crate::choice::choices;
-use crate::fixed::{Q2_30, Q8_24, Turns, wide};
+use crate::fixed::{Decimal, Q2_30, Q8_24, Turns, wide};
 use crate::trig::sin_cos_q30;
 use crate::vector::{cross, dot, unit};
 
@@ -409,19 +409,18 @@ impl fmt::Display for MatrixError {
         | Self::Singular { row }) = self;
         write!(f, "matrix row {}: ", row + 1)?;
         match self {
-            Self::Entry {
-                entries: [x, y, z], ..
-            } => write!(f, "({x}, {y}, {z}): expected entries within ±{MAX_ENTRY}"),
-            Self::Translation { distance, .. } => write!(
-                f,
-                "translation {distance}: expected within ±{MAX_TRANSLATION}"
-            ),
-            Self::Short {
-                entries: [x, y, z], ..
-            } => write!(
-                f,
-                "({x}, {y}, {z}): expected a length of at least {MIN_ROW}"
-            ),
+            Self::Entry { entries, .. } => {
+                let ([x, y, z], most) = (entries.map(Decimal), Decimal(MAX_ENTRY));
+                write!(f, "({x}, {y}, {z}): expected entries within ±{most}")
+            }
+            Self::Translation { distance, .. } => {
+                let [distance, most] = [*distance, MAX_TRANSLATION].map(Decimal);
+                write!(f, "translation {distance}: expected within ±{most}")
+            }
+            Self::Short { entries, .. } => {
+                let ([x, y, z], least) = (entries.map(Decimal), Decimal(MIN_ROW));
+                write!(f, "({x}, {y}, {z}): expected a length of at least {least}")
+            }
             Self::Singular { .. } => f.write_str(
                 "singular: expected an angle of at least 0.056 degrees to the rows before it",
             ),

@@ -4,7 +4,7 @@ use core::fmt;
 
 use super::limits::{FIELD_OF_VIEW, HALF_HEIGHT, HALF_WIDTH, MAX_EYE, MIDDLE, NEAR, RADIUS, WIDTH};
 use super::projection::Projection;
-use crate::fixed::{Q2_23, Q32_32, Turns, U4_28, U8_28};
+use crate::fixed::{Decimal, Q2_23, Q32_32, Turns, U4_28, U8_28};
 
 /// One of the three vectors of a camera's basis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -110,42 +110,38 @@ pub enum ViewError {
 
 impl fmt::Display for ViewError {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            Self::Eye([x, y, z]) => write!(
-                f,
-                "eye ({x}, {y}, {z}): expected within {MAX_EYE} of the origin"
-            ),
-            Self::Length {
-                axis,
-                row: [x, y, z],
-            } => {
+        match *self {
+            Self::Eye(eye) => {
+                let [x, y, z] = eye.map(Decimal);
+                write!(
+                    f,
+                    "eye ({x}, {y}, {z}): expected within {MAX_EYE} of the origin"
+                )
+            }
+            Self::Length { axis, row } => {
+                let [x, y, z] = row.map(Decimal);
                 write!(f, "{axis} = ({x}, {y}, {z}): expected length 1 within 1e-4")
             }
             Self::NotPerpendicular { a, b, product } => {
-                write!(f, "{a}·{b} = {product}: expected 0 within 1e-4")
+                write!(f, "{a}·{b} = {}: expected 0 within 1e-4", Decimal(product))
             }
             Self::Mirrored => {
                 f.write_str("u × v = −n: expected u × v = n (u right, v down, n forward)")
             }
-            Self::HalfWidth(x) => write!(
-                f,
-                "half_width {x}: expected {} to {}",
-                HALF_WIDTH[0], HALF_WIDTH[1]
-            ),
-            Self::HalfHeight(x) => write!(
-                f,
-                "half_height {x}: expected {} to {}",
-                HALF_HEIGHT[0], HALF_HEIGHT[1]
-            ),
+            Self::HalfWidth(x) => out_of_range(f, "half_width", x, &HALF_WIDTH),
+            Self::HalfHeight(x) => out_of_range(f, "half_height", x, &HALF_HEIGHT),
             Self::Middle(x) => write!(
                 f,
-                "middle of the picture {x} from the camera's axis: expected within {MIDDLE}"
+                "middle of the picture {} from the camera's axis: expected within {}",
+                Decimal(x),
+                Decimal(MIDDLE)
             ),
             Self::Sides { low, least, most } => {
                 let (low, high) = match low {
                     Side::Left => ("left", "right"),
                     Side::Bottom => ("bottom", "top"),
                 };
+                let [least, most] = [least, most].map(Decimal);
                 write!(
                     f,
                     "{low} {least}, {high} {most}: expected {low} below {high}"
@@ -156,30 +152,52 @@ impl fmt::Display for ViewError {
                 place,
                 found,
                 expected,
-            } => write!(
-                f,
-                "row {}, column {} is {found}: expected {expected} in {projection} projection",
-                place / 4 + 1,
-                place % 4 + 1
-            ),
+            } => {
+                let [row, column] = [place / 4, place % 4].map(|from_0| u32::from(from_0) + 1);
+                let found = Decimal(found);
+                write!(
+                    f,
+                    "row {row}, column {column} is {found}: expected {expected} in {projection} projection"
+                )
+            }
             Self::Far { near, far } => {
+                let (near, far) = (Decimal(near), Decimal(far));
                 write!(f, "far {far}: expected beyond the near plane, {near}")
             }
-            Self::Width(x) => write!(f, "width {x}: expected {} to {}", WIDTH[0], WIDTH[1]),
-            Self::Near(x) => write!(f, "near {x}: expected {} to {}", NEAR[0], NEAR[1]),
-            Self::Radius(r) => write!(f, "radius {r}: expected {} to {}", RADIUS[0], RADIUS[1]),
+            Self::Width(x) => out_of_range(f, "width", x, &WIDTH),
+            Self::Near(x) => out_of_range(f, "near", x, &NEAR),
+            Self::Radius(x) => out_of_range(f, "radius", x, &RADIUS),
             Self::Gaze => f.write_str("gaze (0, 0, 0): expected a non-zero direction"),
             Self::Up => f.write_str("up (0, 0, 0): expected a non-zero direction"),
-            Self::FieldOfView(angle) => write!(
-                f,
-                "field of view {} degrees: expected {:.0} to {:.0}",
-                angle.to_degrees(),
-                FIELD_OF_VIEW[0].to_degrees(),
-                FIELD_OF_VIEW[1].to_degrees()
-            ),
-            Self::Polar(phi) => write!(f, "phi {} degrees: expected 0 to 180", phi.to_degrees()),
+            Self::FieldOfView(angle) => {
+                let [least, most] =
+                    FIELD_OF_VIEW.map(|angle| angle.to_degrees().round().to_num::<u32>());
+                let angle = Decimal(angle.to_degrees());
+                write!(
+                    f,
+                    "field of view {angle} degrees: expected {least} to {most}"
+                )
+            }
+            Self::Polar(phi) => {
+                let phi = Decimal(phi.to_degrees());
+                write!(f, "phi {phi} degrees: expected 0 to 180")
+            }
         }
     }
+}
+
+/// Writes that a number is not within its range.
+fn out_of_range<T: Copy>(
+    f: &mut fmt::Formatter,
+    name: &str,
+    found: T,
+    &[least, most]: &[T; 2],
+) -> fmt::Result
+where
+    Decimal<T>: fmt::Display,
+{
+    let [found, least, most] = [found, least, most].map(Decimal);
+    write!(f, "{name} {found}: expected {least} to {most}")
 }
 
 impl core::error::Error for ViewError {}
