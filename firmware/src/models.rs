@@ -147,18 +147,15 @@ impl Models {
     /// Creates the initial models. `shapes` is memory for the built-in meshes, `turned` is memory for copies of meshes with transformed
     /// normals, `cube_program` is the built-in wireframe program, and `most_triangles` is the largest number of triangles of an uploaded
     /// mesh.
-    ///
-    /// # Errors
-    /// [`Deviation`] for a damaged cube.
     pub fn new(
         arena: Arena,
         shapes: &'static mut [u8],
         turned: Arena,
         cube_program: Program<'static>,
         most_triangles: u32,
-    ) -> Result<Self, Deviation> {
-        let shapes = Shapes::new(shapes)?;
-        Ok(Self {
+    ) -> Self {
+        let shapes = Shapes::new(shapes);
+        Self {
             arena,
             uploads: Vec::new(),
             program: cube_program,
@@ -169,7 +166,7 @@ impl Models {
             objects: Objects::new(turned),
             revision: 0,
             most_triangles,
-        })
+        }
     }
 
     /// Largest number of triangles of an uploaded mesh.

@@ -3,8 +3,7 @@
 use core::fmt;
 
 use glint_core::camera::ViewError;
-use glint_core::deviation::Deviation;
-use glint_core::feature::{MESH, WIREFRAME};
+use glint_core::feature::WIREFRAME;
 use glint_core::flash::CONTENTS;
 use glint_core::wireframe::{CUBE, Program, ProgramError};
 use glint_program::gateware::GatewareRenderer;
@@ -22,8 +21,6 @@ use crate::transfer::Downloads;
 pub enum StartError {
     /// The start of the hardware failed.
     Hardware(hardware::StartError),
-    /// The built-in cube is not a valid mesh.
-    Cube(Deviation),
     /// The built-in program is not a valid wireframe program.
     Program(ProgramError<'static>),
     /// The initial camera is out of range.
@@ -34,8 +31,6 @@ impl fmt::Display for StartError {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::Hardware(error) => error.fmt(f),
-            Self::Cube(error) if MESH.is_built => write!(f, "the built-in cube: {error}"),
-            Self::Cube(_) => f.write_str("the built-in cube is invalid"),
             Self::Program(error) if WIREFRAME.is_built => write!(f, "the built-in {error}"),
             Self::Program(_) => f.write_str("the built-in wireframe program is invalid"),
             Self::Camera(error) => write!(f, "the initial camera: {error}"),
@@ -46,7 +41,7 @@ impl fmt::Display for StartError {
 /// Starts the hardware, and creates the machine with its initial scene.
 ///
 /// # Errors
-/// The hardware cannot start, or the built-in cube, the built-in program or the initial camera is invalid.
+/// The hardware cannot start, or the built-in program or the initial camera is invalid.
 pub fn machine() -> Result<Machine, StartError> {
     let Hardware {
         identity,
@@ -73,8 +68,7 @@ pub fn machine() -> Result<Machine, StartError> {
             Arena::new(spare.turned),
             program,
             most_triangles,
-        )
-        .map_err(StartError::Cube)?,
+        ),
         renderer,
         devices,
         ctrl,

@@ -143,6 +143,29 @@ impl<'a> Mesh<'a> {
         })
     }
 
+    /// A mesh of constant bytes without optional attributes, for which a test must state that [`new_checked`](Self::new_checked) returns the
+    /// same; this function checks only lengths. A program with such a mesh needs no check when it starts. `None` for bytes that are not a
+    /// whole number of records after a header.
+    pub const fn from_constant(bytes: &'static [u8]) -> Option<Self> {
+        let Some((header, records)) = bytes.split_first_chunk() else {
+            return None;
+        };
+        let (records, []) = records.as_chunks() else {
+            return None;
+        };
+        let header = MeshHeader::from_bytes(header);
+        Some(Self {
+            bytes,
+            records,
+            arrays: &[],
+            textures: &[],
+            attributes: 0,
+            vertices: header.vertices,
+            triangles: header.triangles,
+            radius: header.radius,
+        })
+    }
+
     /// The mesh, if it has at most `limit` triangles.
     ///
     /// # Errors

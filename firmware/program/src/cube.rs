@@ -1,7 +1,7 @@
 //! The built-in model: a cube of edge length 1 with one colour per side.
 
 use glint_core::colour::Rgb565;
-use glint_core::mesh::{ChunkHeader, MAGIC, MeshHeader, Triangle, Vertex};
+use glint_core::mesh::{ChunkHeader, MAGIC, Mesh, MeshHeader, Triangle, Vertex};
 
 use crate::aligned::Aligned;
 
@@ -24,8 +24,11 @@ const SIDES: [(usize, u16, u16); 3] = [
     (2, 0xffff, 0xc2bf),
 ];
 
+/// The mesh.
+pub const CUBE: Mesh<'static> = Mesh::from_constant(&BYTES.0).expect("a cube has whole records");
+
 /// The mesh in the format of an upload.
-pub static BYTES: Aligned<[u8; LENGTH]> = Aligned(bytes());
+static BYTES: Aligned<[u8; LENGTH]> = Aligned(bytes());
 
 const LENGTH: usize =
     MeshHeader::BYTES + ChunkHeader::BYTES + VERTICES * Vertex::BYTES + TRIANGLES * Triangle::BYTES;
@@ -130,5 +133,15 @@ impl Writer {
             triangle += 1;
         }
         self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_cube_is_a_mesh() {
+        assert_eq!(Mesh::new_checked(&BYTES.0), Ok(CUBE));
     }
 }

@@ -132,7 +132,7 @@ impl<P: Program> Host<P> {
     /// ```
     #[must_use]
     pub fn start() -> Self {
-        let shapes = Shapes::new(vec![0; SHAPES].leak()).expect("the built-in cube is a mesh");
+        let shapes = Shapes::new(vec![0; SHAPES].leak());
         let defaults = Defaults {
             size: Size::W640,
             ..Defaults::GATEWARE

@@ -52,10 +52,6 @@ pub fn run<P: Program>() -> ! {
             identity.firmware, identity.gateware
         ))
     };
-    let shapes = match Shapes::new(spare.shapes) {
-        Ok(shapes) => shapes,
-        Err(_) => panic::report(format_args!("cannot start: the built-in cube is invalid")),
-    };
     let mut inputs = Inputs {
         devices,
         gesture,
@@ -75,7 +71,7 @@ pub fn run<P: Program>() -> ! {
     unsafe {
         sensor::start(stream);
     }
-    let mut board = Board::new(renderer.defaults(), shapes);
+    let mut board = Board::new(renderer.defaults(), Shapes::new(spare.shapes));
     supervision::on_picture();
     let mut program = P::start(&mut board);
     let mut notes = Notes::default();

@@ -2,12 +2,11 @@
 
 use core::mem;
 
-use glint_core::deviation::Deviation;
 use glint_core::mesh::Mesh;
 use glint_core::shape::Shape;
-use glint_scene::CUBE;
+use glint_scene::CUBE as CUBE_NAME;
 
-use crate::cube;
+use crate::cube::CUBE;
 
 /// The built-in meshes that have been made, and the memory for those that have not.
 ///
@@ -16,13 +15,11 @@ use crate::cube;
 /// use glint_program::core::shape::Shape;
 /// use glint_program::shapes::Shapes;
 ///
-/// let mut shapes = Shapes::new(memory)?;
+/// let mut shapes = Shapes::new(memory);
 /// let torus = shapes.shape(Shape::Torus).expect("there is memory for each shape");
 /// assert_eq!(shapes.made("torus"), Some(torus));
-/// # Ok::<(), glint_program::core::deviation::Deviation>(())
 /// ```
 pub struct Shapes {
-    cube: Mesh<'static>,
     shapes: [Option<Mesh<'static>>; Shape::ALL.len()],
     memory: &'static mut [u8],
 }
@@ -35,30 +32,25 @@ impl Shapes {
     /// use glint_program::shapes::Shapes;
     ///
     /// let memory = vec![0; MAX_BYTES * Shape::ALL.len()].leak();
-    /// let mut shapes = Shapes::new(memory)?;
+    /// let mut shapes = Shapes::new(memory);
     /// assert!(Shape::ALL.iter().all(|&shape| shapes.shape(shape).is_some()));
-    /// # Ok::<(), glint_program::core::deviation::Deviation>(())
     /// ```
     ///
-    /// # Errors
-    /// [`Deviation`] for a damaged cube.
-    pub fn new(memory: &'static mut [u8]) -> Result<Self, Deviation> {
-        Ok(Self {
-            cube: Mesh::new_checked(&cube::BYTES.0)?,
+    pub const fn new(memory: &'static mut [u8]) -> Self {
+        Self {
             shapes: [None; Shape::ALL.len()],
             memory,
-        })
+        }
     }
 
     /// The built-in cube, which needs no memory.
     ///
     /// ```
-    /// let shapes = glint_program::shapes::Shapes::new(&mut [])?;
+    /// let shapes = glint_program::shapes::Shapes::new(&mut []);
     /// assert_eq!(shapes.cube().triangle_count(), 12);
-    /// # Ok::<(), glint_program::core::deviation::Deviation>(())
     /// ```
     pub const fn cube(&self) -> Mesh<'static> {
-        self.cube
+        CUBE
     }
 
     /// Names of all built-in meshes.
@@ -68,21 +60,20 @@ impl Shapes {
     /// assert_eq!(names[..3], ["cube", "sphere", "torus"]);
     /// ```
     pub fn names() -> impl Iterator<Item = &'static str> {
-        [CUBE].into_iter().chain(Shape::NAMES)
+        [CUBE_NAME].into_iter().chain(Shape::NAMES)
     }
 
     /// The built-in mesh with this name.
     ///
     /// ```
     /// # let memory = vec![0; 6 * glint_program::core::shape::MAX_BYTES].leak();
-    /// let mut shapes = glint_program::shapes::Shapes::new(memory)?;
+    /// let mut shapes = glint_program::shapes::Shapes::new(memory);
     /// assert!(shapes.named("crate").is_some_and(|mesh| mesh.has_textures()));
     /// assert!(shapes.named("teapot").is_none());
-    /// # Ok::<(), glint_program::core::deviation::Deviation>(())
     /// ```
     pub fn named(&mut self, name: &str) -> Option<Mesh<'static>> {
-        if name == CUBE {
-            return Some(self.cube);
+        if name == CUBE_NAME {
+            return Some(CUBE);
         }
         let shape = Shape::ALL.into_iter().find(|shape| shape.name() == name)?;
         self.shape(shape)
@@ -92,15 +83,14 @@ impl Shapes {
     ///
     /// ```
     /// # let memory = vec![0; 6 * glint_program::core::shape::MAX_BYTES].leak();
-    /// let mut shapes = glint_program::shapes::Shapes::new(memory)?;
+    /// let mut shapes = glint_program::shapes::Shapes::new(memory);
     /// assert!(shapes.made("sphere").is_none());
     /// let sphere = shapes.named("sphere");
     /// assert_eq!(shapes.made("sphere"), sphere);
-    /// # Ok::<(), glint_program::core::deviation::Deviation>(())
     /// ```
     pub fn made(&self, name: &str) -> Option<Mesh<'static>> {
-        if name == CUBE {
-            return Some(self.cube);
+        if name == CUBE_NAME {
+            return Some(CUBE);
         }
         let shape = Shape::ALL.into_iter().find(|shape| shape.name() == name)?;
         *self.shapes.get(shape as usize)?
@@ -112,10 +102,9 @@ impl Shapes {
     /// # let memory = vec![0; 6 * glint_program::core::shape::MAX_BYTES].leak();
     /// use glint_program::core::shape::Shape;
     ///
-    /// let mut shapes = glint_program::shapes::Shapes::new(memory)?;
+    /// let mut shapes = glint_program::shapes::Shapes::new(memory);
     /// let sphere = shapes.shape(Shape::Sphere).unwrap();
     /// assert_eq!(sphere.triangle_count(), 1024);
-    /// # Ok::<(), glint_program::core::deviation::Deviation>(())
     /// ```
     pub fn shape(&mut self, shape: Shape) -> Option<Mesh<'static>> {
         let place = self.shapes.get_mut(shape as usize)?;
