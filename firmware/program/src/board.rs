@@ -369,8 +369,14 @@ impl Board {
     /// # Ok::<(), glint_program::host::HostError>(())
     /// ```
     pub fn turns(&self, per_second: Q32_32) -> Turns {
-        let microseconds = i128::try_from(self.time.as_micros()).unwrap_or_default();
-        Turns((i128::from(per_second.to_bits()) * microseconds).div_euclid(1_000_000) as u32)
+        // Products of 64 bits, because whole turns are dropped.
+        const MICROSECONDS: u32 = 1_000_000;
+        let (bits, rest) = (per_second.to_bits(), u64::from(self.time.subsec_micros()));
+        let by_seconds = bits.wrapping_mul(self.time.as_secs().cast_signed()) as u32;
+        let turns = ((bits >> 32) as i32).rem_euclid(MICROSECONDS.cast_signed());
+        let turns = u64::from(turns.cast_unsigned()) * rest % u64::from(MICROSECONDS);
+        let by_rest = ((turns << 32) + u64::from(bits as u32) * rest) / u64::from(MICROSECONDS);
+        Turns(by_seconds.wrapping_add(by_rest as u32))
     }
 
     /// Largest size of a picture on this board.
@@ -662,4 +668,46 @@ pub(crate) fn digits(displays: [Display; 2]) -> [u8; 8] {
     let mut segments = [0; 8];
     segments.copy_from_slice(displays.map(|display| display.digits()).as_flattened());
     segments
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn turns_are_exact_and_rounded_down() {
+        let mut board = Board::new(Defaults::GATEWARE, Shapes::new(&mut []));
+        let rates = [
+            0,
+            1,
+            -1,
+            1 << 32,
+            -(1 << 32),
+            715_827_883,
+            -1_234_567_890_123,
+            i64::MAX,
+            i64::MIN,
+        ];
+        let times = [
+            0,
+            1,
+            16_667,
+            999_999,
+            1_000_000,
+            86_399_999_999,
+            u64::MAX >> 1,
+        ];
+        for (bits, microseconds) in rates
+            .into_iter()
+            .flat_map(|bits| times.map(|time| (bits, time)))
+        {
+            board.time = Duration::from_micros(microseconds);
+            let turns = (i128::from(bits) * i128::from(microseconds)).div_euclid(1_000_000);
+            assert_eq!(
+                board.turns(Q32_32::from_bits(bits)),
+                Turns(turns as u32),
+                "{bits}, {microseconds}"
+            );
+        }
+    }
 }
