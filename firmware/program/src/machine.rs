@@ -55,7 +55,7 @@ pub fn run<P: Program>() -> ! {
     let mut inputs = Inputs {
         devices,
         gesture,
-        imu: Imu::default(),
+        imu: IMU.is_built.then(Imu::default),
         clock,
         start: clock.cycles(),
     };
@@ -101,7 +101,8 @@ pub fn run<P: Program>() -> ! {
 struct Inputs {
     devices: Devices,
     gesture: Option<Gesture>,
-    imu: Imu,
+    /// The motion sensor; `None` in a build without it.
+    imu: Option<Imu>,
     clock: Clock,
     /// Time of the program's start, in clock cycles since reset.
     start: u64,
@@ -152,8 +153,8 @@ impl Inputs {
         // Drawing by the soft core, which calls this function, may take long.
         supervision::on_picture();
         board.sample_buttons(self.time(), self.devices.buttons.read());
-        if IMU.is_built {
-            sensor::deliver_each(&mut self.imu, &mut |imu| {
+        if let Some(imu) = &mut self.imu {
+            sensor::deliver_each(imu, &mut |imu| {
                 if let Some(sample) = imu.latest() {
                     board.add_sample(Motion {
                         attitude: imu.attitude(),

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use glint_core::feature::TEXTURE;
+use glint_core::feature::{ANTIALIASING, FIELD, FOG, SKY, TEXTURE};
 use glint_engines::raymarch::Missing;
 use glint_hal::triangle::{EngineError, Error};
 use glint_model::RenderError;
@@ -119,37 +119,45 @@ impl fmt::Display for Fallback {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::Triangle(error) => error.fmt(f)?,
-            Self::Field(missing) => missing.fmt(f)?,
+            Self::Field(missing) => FIELD.when_built(|| missing.fmt(f))?,
             Self::NoSmoothShading => {
                 f.write_str("triangle engine: this gateware has no smooth shading")?;
             }
-            Self::NoTextures => f.write_str(
-                "triangle engine: this gateware has no textures; `textures off` draws the mesh without them, fast",
-            )?,
-            Self::NoSky => f.write_str("triangle engine: this gateware has no sky behind meshes")?,
-            Self::NoFog => f.write_str("triangle engine: this gateware has no fog on meshes")?,
-            Self::NoAntialiasing => {
-                f.write_str("triangle engine: this gateware draws one sample per pixel")?;
+            Self::NoTextures => TEXTURE.when_built(|| {
+                f.write_str(
+                    "triangle engine: this gateware has no textures; `textures off` draws the mesh without them, fast",
+                )
+            })?,
+            Self::NoSky => SKY.when_built(|| {
+                f.write_str("triangle engine: this gateware has no sky behind meshes")
+            })?,
+            Self::NoFog => {
+                FOG.when_built(|| f.write_str("triangle engine: this gateware has no fog on meshes"))?;
             }
+            Self::NoAntialiasing => ANTIALIASING.when_built(|| {
+                f.write_str("triangle engine: this gateware draws one sample per pixel")
+            })?,
             Self::OrthographicFog => {
-                f.write_str("triangle engine: no fog in orthographic projection")?;
+                FOG.when_built(|| f.write_str("triangle engine: no fog in orthographic projection"))?;
             }
             Self::RectanglesInFog => TEXTURE.when_built(|| {
                 f.write_str("triangle engine: no rectangles in front of fog")
             })?,
-            Self::SmoothTextures => f.write_str(
-                "triangle engine: no textures with smooth shading, expected `shading flat` or `textures off`",
-            )?,
-            Self::TooManyTextures => {
-                f.write_str("triangle engine: expected at most 255 textures in a frame")?;
-            }
+            Self::SmoothTextures => TEXTURE.when_built(|| {
+                f.write_str(
+                    "triangle engine: no textures with smooth shading, expected `shading flat` or `textures off`",
+                )
+            })?,
+            Self::TooManyTextures => TEXTURE.when_built(|| {
+                f.write_str("triangle engine: expected at most 255 textures in a frame")
+            })?,
             Self::NoDepths => f.write_str("triangle engine: this gateware has no depth buffer")?,
             Self::Eye => f.write_str("triangle engine: the eye is too far from the origin")?,
             Self::Orthographic => {
                 f.write_str("triangle engine: no smooth shading in orthographic projection")?;
             }
             Self::NoRaymarcher => {
-                f.write_str("distance fields: this gateware has no raymarcher")?
+                FIELD.when_built(|| f.write_str("distance fields: this gateware has no raymarcher"))?;
             }
             Self::Descriptors(unsupported) => unsupported.fmt(f)?,
             Self::NoLineEngine => f.write_str("wireframe: this gateware has no line engine")?,

@@ -623,5 +623,6 @@ impl GatewareRenderer {
 
 /// Whether the line engine draws the frame or a part of it.
 const fn has_lines(frame: &Frame) -> bool {
-    matches!(frame.subject, Subject::Wireframe(_) | Subject::Edges(..))
+    (WIREFRAME.is_built || EDGES.is_built)
+        && matches!(frame.subject, Subject::Wireframe(_) | Subject::Edges(..))
 }
