@@ -73,6 +73,8 @@ features! {
     FOG = "fog";
     /// A mesh in a field.
     MESH_IN_FIELD = "mesh-in-field";
+    /// Clipping of the triangles that cross the near plane or reach far beyond the picture.
+    CLIPPING = "clipping";
     /// Stereo pictures.
     STEREO = "stereo";
     /// Pictures with four samples a pixel.

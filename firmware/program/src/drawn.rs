@@ -63,7 +63,7 @@ impl fmt::Display for DrawError {
             Self::Render(error) if CPU.is_built || STEREO.is_built => error.fmt(f),
             Self::Render(_) => Ok(()),
             Self::NoCpu(None) => CPU.fmt(f),
-            Self::NoCpu(Some(fallback)) => write!(f, "{fallback}; {CPU}"),
+            Self::NoCpu(Some(fallback)) => write!(f, "{fallback}; {}", fallback.part()),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use glint_core::feature::{ANTIALIASING, FIELD, FOG, SKY, TEXTURE};
+use glint_core::feature::{ANTIALIASING, CLIPPING, CPU, FIELD, FOG, Feature, SKY, TEXTURE};
 use glint_engines::raymarch::Missing;
 use glint_hal::triangle::{EngineError, Error};
 use glint_model::RenderError;
@@ -72,6 +72,14 @@ impl Fallback {
             | Self::OrthographicFog
             | Self::RectanglesInFog
             | Self::Descriptors(_) => None,
+        }
+    }
+
+    /// The part of a build that draws such a frame.
+    pub const fn part(&self) -> Feature {
+        match self {
+            Self::Descriptors(Unsupported::Clipping) => CLIPPING,
+            _ => CPU,
         }
     }
 
@@ -183,6 +191,8 @@ pub enum Unsupported {
     DarkSides,
     /// Transformed normals of the object with this number, from 1, because no memory is free for a copy of the object's mesh.
     Normals(usize),
+    /// A triangle that crosses the near plane or reaches far beyond the picture, in a build without the code that clips it.
+    Clipping,
 }
 
 impl fmt::Display for Unsupported {
@@ -193,6 +203,9 @@ impl fmt::Display for Unsupported {
             Self::Volume => f.write_str("no clipping to the view volume"),
             Self::Winding => f.write_str("no `winding screen`"),
             Self::DarkSides => f.write_str("no ambient light on smooth triangles with `cull off`"),
+            Self::Clipping => f.write_str(
+                "no triangle that crosses the near plane or reaches far beyond the picture",
+            ),
             Self::Normals(object) => write!(
                 f,
                 "not enough memory for the transformed normals of object {object}, expected fewer or smaller objects with non-uniform scale"

@@ -8,7 +8,7 @@
 use core::mem;
 
 use glint_core::colour::{Shading, Winding};
-use glint_core::feature::{CPU, MESH, TEXTURE};
+use glint_core::feature::{CLIPPING, CPU, MESH, TEXTURE};
 use glint_engines::triangle::MeshPass;
 use glint_hal::triangle::{Counts, EngineError, Error, Prepared, TriangleEngine};
 use glint_model::edges::EdgeList;
@@ -180,6 +180,9 @@ impl GeometryPasses {
         let starts = self.start_prepared(job);
         self.triangles += counts.triangles;
         if counts.exceptions > job.buffers.stats.clipped {
+            if !CLIPPING.is_built {
+                return Err(Fallback::Descriptors(Unsupported::Clipping));
+            }
             self.clip(job, number, &counts)?;
         }
         if starts {
