@@ -6,7 +6,7 @@ use core::time::Duration;
 
 use embedded_io::Write as _;
 use glint_core::digits::Display;
-use glint_core::feature::{GESTURE, IMU};
+use glint_core::feature::{CPU, GESTURE, IMU};
 use glint_core::gesture::Presence;
 use glint_core::image_sensor::FrameSize;
 use glint_core::mpu6050::Stream;
@@ -14,7 +14,7 @@ use glint_hal::timer::Clock;
 
 use crate::board::{Board, Hand, Levels, Motion, digits};
 use crate::canvas::{Canvas, Pixels};
-use crate::drawn::Drawn;
+use crate::drawn::{DrawError, Drawn};
 use crate::gesture::Gesture;
 use crate::hardware::{Devices, Hardware};
 use crate::interrupts;
@@ -224,7 +224,7 @@ impl Pixels for Renderer {
 /// Reason why a picture is not drawn.
 enum Error {
     Picture(PictureError),
-    Draw(crate::drawn::DrawError),
+    Draw(DrawError),
 }
 
 impl From<PictureError> for Error {
@@ -233,17 +233,23 @@ impl From<PictureError> for Error {
     }
 }
 
-impl From<crate::drawn::DrawError> for Error {
-    fn from(error: crate::drawn::DrawError) -> Self {
+impl From<DrawError> for Error {
+    fn from(error: DrawError) -> Self {
         Self::Draw(error)
     }
 }
 
 impl core::fmt::Display for Error {
     fn fmt(&self, f: &mut core::fmt::Formatter) -> core::fmt::Result {
+        f.write_str("picture: ")?;
         match self {
-            Self::Picture(error) => write!(f, "picture: {error}"),
-            Self::Draw(error) => write!(f, "picture: {error}"),
+            Self::Picture(error) => error.fmt(f),
+            // Texts of a firmware name its own commands.
+            Self::Draw(DrawError::NoCpu(Some(fallback))) => {
+                write!(f, "{fallback}; {}", PictureError::Lacks(fallback.part()))
+            }
+            Self::Draw(DrawError::NoCpu(None)) => PictureError::Lacks(CPU).fmt(f),
+            Self::Draw(error @ DrawError::Render(_)) => error.fmt(f),
         }
     }
 }

@@ -4,7 +4,7 @@ use core::fmt;
 
 use glint_core::appearance::Appearance;
 use glint_core::camera::{View, ViewError};
-use glint_core::feature::WIREFRAME;
+use glint_core::feature::{EDGES, FIELD, Feature, MESH_IN_FIELD, OBJECT, TEXTURE, WIREFRAME};
 use glint_core::field::Field;
 use glint_core::fixed::U4_28;
 use glint_core::light::Background;
@@ -67,6 +67,8 @@ pub enum PictureError {
     Matrix(MatrixError),
     /// The viewing parameters of the lines are invalid.
     Lines(ProgramError<'static>),
+    /// The program is built without this part of the library.
+    Lacks(Feature),
 }
 
 impl fmt::Display for PictureError {
@@ -82,12 +84,24 @@ impl fmt::Display for PictureError {
             Self::View(error) => write!(f, "camera: {error}"),
             Self::Matrix(error) => error.fmt(f),
             Self::Lines(error) if WIREFRAME.is_built => write!(f, "lines: {error}"),
-            Self::Lines(_) => WIREFRAME.fmt(f),
+            Self::Lines(_) => Self::Lacks(WIREFRAME).fmt(f),
+            Self::Lacks(Feature { name, .. }) => {
+                write!(f, "this program lacks the feature {name} of glint-program in Cargo.toml")
+            }
         }
     }
 }
 
 impl core::error::Error for PictureError {}
+
+/// Checks that the program is built with a part of the library. The compiler knows the result, so a check of an existing part has no code.
+const fn built(part: Feature) -> Result<(), PictureError> {
+    if part.is_built {
+        Ok(())
+    } else {
+        Err(PictureError::Lacks(part))
+    }
+}
 
 impl From<ViewError> for PictureError {
     fn from(error: ViewError) -> Self {
@@ -221,7 +235,8 @@ impl<'p> Picture<'p> {
     /// ```
     ///
     /// # Errors
-    /// [`PictureError::Meshes`] for too many meshes.
+    /// [`PictureError::Meshes`] for too many meshes. A program without the feature `object` fails when the picture is drawn, unless the mesh
+    /// is in a field.
     pub fn mesh(&mut self, mesh: Mesh<'p>, place: Matrix) -> Result<&mut Object<'p>, PictureError> {
         let object = Object {
             colour: None,
@@ -310,8 +325,9 @@ impl<'p> Picture<'p> {
     /// ```
     ///
     /// # Errors
-    /// [`PictureError::Subjects`] if the picture shows lines or edges.
+    /// [`PictureError::Subjects`] if the picture shows lines or edges; [`PictureError::Lacks`].
     pub fn field(&mut self, field: &'p Field, quality: Quality) -> Result<(), PictureError> {
+        built(FIELD)?;
         self.set(Main::Field(field, quality))
     }
 
@@ -339,8 +355,9 @@ impl<'p> Picture<'p> {
     /// ```
     ///
     /// # Errors
-    /// [`PictureError::Subjects`] if the picture shows something else.
+    /// [`PictureError::Subjects`] if the picture shows something else; [`PictureError::Lacks`].
     pub fn edges(&mut self, mesh: Mesh<'p>, edges: Edges) -> Result<(), PictureError> {
+        built(EDGES)?;
         self.set(Main::Edges(MeshSubject::new(mesh), edges))
     }
 
@@ -367,8 +384,9 @@ impl<'p> Picture<'p> {
     /// ```
     ///
     /// # Errors
-    /// [`PictureError::Subjects`] if the picture shows something else.
+    /// [`PictureError::Subjects`] if the picture shows something else; [`PictureError::Lacks`].
     pub fn wireframe(&mut self, lines: Program<'p>, pose: Pose) -> Result<(), PictureError> {
+        built(WIREFRAME)?;
         self.set(Main::Lines(WireframeSubject {
             program: lines,
             pose,
@@ -408,8 +426,9 @@ impl<'p> Picture<'p> {
     /// ```
     ///
     /// # Errors
-    /// [`PictureError::Rectangles`] for too many rectangles.
+    /// [`PictureError::Rectangles`] for too many rectangles; [`PictureError::Lacks`].
     pub fn rectangle(&mut self, rectangle: Rectangle<'p>) -> Result<(), PictureError> {
+        built(TEXTURE)?;
         let added = self.rectangles.push(rectangle);
         added.map_err(|_| PictureError::Rectangles)
     }
@@ -417,10 +436,15 @@ impl<'p> Picture<'p> {
     /// Converts the description to a frame for the renderer.
     ///
     /// # Errors
-    /// [`PictureError::Subjects`].
+    /// [`PictureError::Subjects`] and [`PictureError::Lacks`].
     pub(crate) fn frame(&self) -> Result<Frame<'_>, PictureError> {
         let subject = match (&self.main, self.meshes.as_slice()) {
-            (Main::Meshes, meshes) => Subject::Objects(meshes),
+            (Main::Meshes, meshes) => {
+                if !meshes.is_empty() {
+                    built(OBJECT)?;
+                }
+                Subject::Objects(meshes)
+            }
             (Main::Field(field, quality), meshes) => {
                 let field = FieldSubject {
                     field,
@@ -429,7 +453,10 @@ impl<'p> Picture<'p> {
                 };
                 match meshes {
                     [] => Subject::Field(field),
-                    [mesh] => Subject::MeshInField(mesh.subject, field),
+                    [mesh] => {
+                        built(MESH_IN_FIELD)?;
+                        Subject::MeshInField(mesh.subject, field)
+                    }
                     _ => return Err(PictureError::Subjects),
                 }
             }

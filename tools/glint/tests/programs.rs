@@ -13,9 +13,10 @@ use litex_pac::BUILD_ID;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::{env, fs};
+use tempfile::TempDir;
 use virtual_board::virtual_image_sensor::{Hand, ImageSensor, Scene};
 use virtual_board::virtual_mpu6050::Wires;
 
@@ -389,35 +390,53 @@ impl Drop for Running {
     }
 }
 
+/// A new project, in a folder that is removed with this value.
+struct Project(TempDir);
+
+impl Project {
+    /// The project that `glint new hello` writes.
+    fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+        let made = Command::new(env!("CARGO_BIN_EXE_glint"))
+            .args(["new", "hello", "--glint"])
+            .arg(&root)
+            .current_dir(&folder)
+            .output()
+            .unwrap();
+        assert!(made.status.success(), "{made:?}");
+        Self(folder)
+    }
+
+    /// A command of cargo in the project. The runner of the project is `glint`: here the tested program.
+    fn cargo(&self, arguments: &[&str]) -> Command {
+        let programs = Path::new(env!("CARGO_BIN_EXE_glint")).parent().unwrap();
+        let path = format!("{}:{}", programs.display(), env::var("PATH").unwrap());
+        let mut command = Command::new("cargo");
+        command
+            .args(arguments)
+            .args(["--offline", "--quiet"])
+            .current_dir(self.0.path().join("hello"))
+            .env("PATH", path)
+            // The library is compiled once for all runs of the tests.
+            .env("CARGO_TARGET_DIR", env!("CARGO_TARGET_TMPDIR"))
+            // Cargo sets variables of the tested package, which do not concern the project.
+            .env_remove("CARGO_MANIFEST_DIR");
+        command
+    }
+
+    /// The memory image of the built program.
+    fn image(profile: &str) -> Vec<u8> {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("riscv32im-unknown-none-elf");
+        let elf = folder.join(profile).join("hello");
+        program::read(&elf).unwrap().image
+    }
+}
+
 #[test]
 fn a_new_project_shows_its_program_in_the_page() {
-    let folder = tempfile::tempdir().unwrap();
-    let glint = Path::new(env!("CARGO_BIN_EXE_glint"));
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let made = Command::new(glint)
-        .args(["new", "hello", "--glint"])
-        .arg(&root)
-        .current_dir(&folder)
-        .output()
-        .unwrap();
-    assert!(made.status.success(), "{made:?}");
-
-    // The runner of the project is `glint`: here the tested program.
-    let path = format!(
-        "{}:{}",
-        glint.parent().unwrap().display(),
-        env::var("PATH").unwrap()
-    );
-    let run = Command::new("cargo")
-        .args(["run", "--offline", "--quiet"])
-        .current_dir(folder.path().join("hello"))
-        .env("PATH", path)
-        // The library is compiled once for all runs of this test.
-        .env("CARGO_TARGET_DIR", env!("CARGO_TARGET_TMPDIR"))
-        // Cargo sets variables of the tested package, which do not concern the project.
-        .env_remove("CARGO_MANIFEST_DIR")
-        .stdout(Stdio::piped())
-        .spawn();
+    let project = Project::new();
+    let run = project.cargo(&["run"]).stdout(Stdio::piped()).spawn();
     let mut run = Running(run.unwrap());
     let mut line = String::new();
     let output = run.0.stdout.take().unwrap();
@@ -437,9 +456,7 @@ fn a_new_project_shows_its_program_in_the_page() {
         "{text}"
     );
 
-    let elf = Path::new(env!("CARGO_TARGET_TMPDIR"));
-    let elf = elf.join("riscv32im-unknown-none-elf/debug/hello");
-    let mut board = board::emulated(&program::read(&elf).unwrap().image).unwrap();
+    let mut board = board::emulated(&Project::image("debug")).unwrap();
     let greeting = "hello: hold button 0 to stop the cube\r\n";
     board.inner().read_until(greeting, LIMIT).unwrap();
     let turning = run_for(&mut board, 0, 30);
@@ -457,6 +474,66 @@ const PROGRAMS: [(&str, u8); 8] = [
     ("scope", 0),
     ("commands", 0),
 ];
+
+/// Largest image of a new project in bytes: 80 KB.
+const NEW_PROJECT: usize = 80_000;
+
+/// The table of docs/program-sizes.md.
+struct Table {
+    path: PathBuf,
+    page: String,
+    /// Whether the table is written, and not compared.
+    updates: bool,
+}
+
+impl Table {
+    fn read(path: PathBuf) -> Self {
+        Self {
+            page: fs::read_to_string(&path).unwrap(),
+            path,
+            updates: env::var_os("GLINT_UPDATE").is_some(),
+        }
+    }
+
+    /// Compares the row of a program with the measured numbers, or replaces the row.
+    fn check(&mut self, name: &str, rate: Option<u32>, size: usize) {
+        let start = self.page.find(&format!("\n| {name} | ")).unwrap() + 1;
+        let end = start + self.page[start..].find('\n').unwrap();
+        let cells: Vec<_> = self.page[start..end].split('|').map(str::trim).collect();
+        let [_, _, picture, stated_rate, stated_size, _] = cells[..] else {
+            panic!("{name}: {cells:?}");
+        };
+        if self.updates {
+            let rate = rate.map_or("–".to_owned(), |rate| rate.to_string());
+            let row = format!("| {name} | {picture} | {rate} | {size} |");
+            self.page.replace_range(start..end, &row);
+            return;
+        }
+        let is_near = |stated: &str, found: f64| {
+            let stated: f64 = stated.replace(',', "").parse().unwrap();
+            (stated - found).abs() < 0.05 * found
+        };
+        assert!(is_near(stated_size, size as f64), "{name}: {size} bytes");
+        let rate_is_near = rate.is_none_or(|rate| is_near(stated_rate, rate.into()));
+        assert!(rate_is_near, "{name}: {rate:?} pictures per second");
+    }
+
+    /// Writes the table if it is written.
+    fn write(self) {
+        if self.updates {
+            fs::write(self.path, self.page).unwrap();
+        }
+    }
+}
+
+/// The number of pictures per second that the left half of the digits shows.
+fn rate(board: &mut SimulatedBoard<EmulatedBoard>) -> u32 {
+    let shown = board.inner().digits();
+    let digit =
+        |lit: &u8| (0..10).find(|&digit| digits::segments(char::from(b'0' + digit)) == *lit);
+    let digits = shown[..4].iter().filter_map(digit);
+    digits.fold(0, |number, digit| 10 * number + u32::from(digit))
+}
 
 /// A shaken sensor: damped swings along x and y, gravity along z.
 fn shaken() -> Wires {
@@ -496,9 +573,7 @@ fn of_page(frame: &Frame) -> Vec<u8> {
 #[test]
 fn the_pages_of_programs_show_their_pictures_sizes_and_rates() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let updates = env::var_os("GLINT_UPDATE").is_some();
-    let path = root.join("docs/program-sizes.md");
-    let mut page = fs::read_to_string(&path).unwrap();
+    let mut table = Table::read(root.join("docs/program-sizes.md"));
     for (name, buttons) in PROGRAMS {
         let image = image(name);
         let mut board = board::emulated(&image).unwrap();
@@ -511,7 +586,7 @@ fn the_pages_of_programs_show_their_pictures_sizes_and_rates() {
         // A program from another compiler version draws its frames at slightly different times, so the pictures may differ slightly.
         let shown = root.join(format!("docs/pictures/program-{name}.png"));
         let found = of_page(&frame);
-        if updates {
+        if table.updates {
             let mut encoder = png::Encoder::new(File::create(&shown).unwrap(), 640, 360);
             encoder.set_color(png::ColorType::Rgb);
             encoder.set_compression(png::Compression::High);
@@ -534,44 +609,17 @@ fn the_pages_of_programs_show_their_pictures_sizes_and_rates() {
             "{name}: mean difference of {mean:.1} of 255 to docs/pictures"
         );
 
-        let digits = &board.inner().digits()[..4];
-        let digit =
-            |lit: &u8| (0..10).find(|&digit| digits::segments(char::from(b'0' + digit)) == *lit);
-        let rate = match name {
-            // The digits of this program show the score, not the rate.
-            "fighter" => None,
-            _ => Some(
-                digits
-                    .iter()
-                    .filter_map(digit)
-                    .fold(0, |n, digit| 10 * n + u32::from(digit)),
-            ),
-        };
-        let start = page.find(&format!("\n| {name} | ")).unwrap() + 1;
-        let end = start + page[start..].find('\n').unwrap();
-        let cells: Vec<_> = page[start..end].split('|').map(str::trim).collect();
-        let [_, _, picture, stated_rate, stated_size, _] = cells[..] else {
-            panic!("{name}: {cells:?}");
-        };
-        let shown_rate = rate.map_or("–".to_owned(), |rate| rate.to_string());
-        if updates {
-            let row = format!("| {name} | {picture} | {shown_rate} | {} |", image.len());
-            page.replace_range(start..end, &row);
-        } else {
-            let is_near = |stated: &str, found: f64| {
-                let stated: f64 = stated.replace(',', "").parse().unwrap();
-                (stated - found).abs() < 0.05 * found
-            };
-            assert!(
-                is_near(stated_size, image.len() as f64),
-                "{name}: {} bytes",
-                image.len()
-            );
-            let rate_is_near = rate.is_none_or(|rate| is_near(stated_rate, rate.into()));
-            assert!(rate_is_near, "{name}: {rate:?} pictures per second");
-        }
+        // The digits of `fighter` show the score, not the rate.
+        let rate = (name != "fighter").then(|| rate(&mut board));
+        table.check(name, rate, image.len());
     }
-    if updates {
-        fs::write(&path, page).unwrap();
-    }
+    let built = Project::new().cargo(&["build", "--release"]).output();
+    let built = built.unwrap();
+    assert!(built.status.success(), "{built:?}");
+    let image = Project::image("release");
+    assert!(image.len() < NEW_PROJECT, "{} bytes", image.len());
+    let mut board = board::emulated(&image).unwrap();
+    run_for(&mut board, 0, 140);
+    table.check("`glint new`", Some(rate(&mut board)), image.len());
+    table.write();
 }
