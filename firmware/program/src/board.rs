@@ -661,6 +661,11 @@ impl Board {
     pub fn shape(&mut self, shape: Shape) -> Mesh<'static> {
         self.shapes.shape(shape).unwrap_or(self.shapes.cube())
     }
+
+    /// The built-in mesh with this name.
+    pub(crate) fn named(&mut self, name: &str) -> Option<Mesh<'static>> {
+        self.shapes.named(name)
+    }
 }
 
 /// The segments of both four-digit displays.

@@ -42,6 +42,7 @@
 //! | [`Board`] | buttons, switches, LEDs, digits, motion sensor, hand, time, serial line |
 //! | [`Picture`] | camera, light, meshes, field, lines, rectangles |
 //! | [`Canvas`] | text and shapes of `embedded-graphics` on the drawn picture |
+//! | [`ShownScene`] | a scene of console commands, as in scene files |
 //! | [`lines`] | segments in space, drawn by the line engine |
 //! | [`triangles`] | triangles in pixels, for other libraries and a program's own geometry |
 //! | [`core`], [`model`], [`scene`] | the crates whose types the interface uses |
@@ -60,6 +61,7 @@ pub mod lines;
 mod picture;
 mod program;
 pub mod shapes;
+mod shown_scene;
 mod soft_core;
 pub mod triangles;
 
@@ -108,6 +110,7 @@ pub use glint_model as model;
 pub use glint_scene as scene;
 pub use picture::{MAX_RECTANGLES, Picture, PictureError};
 pub use program::Program;
+pub use shown_scene::{SceneError, ShownScene};
 
 /// Clock cycles of the soft core since reset, for measurements of a program's own code; always 0 on a host.
 ///

@@ -19,6 +19,7 @@ use glint_model::{FieldSubject, Frame, MeshSubject, Object, Placement, Subject, 
 use glint_scene::{Defaults, Sphere};
 use heapless::Vec;
 
+use crate::shown_scene::ShownScene;
 use crate::triangles::Triangles;
 
 /// Largest number of rectangles of a picture.
@@ -131,7 +132,13 @@ enum Main<'p> {
     Edges(MeshSubject<'p>, Edges),
     /// Lines, drawn by the line engine.
     Lines(WireframeSubject<'p>),
+    /// A scene, and the function that converts it with these objects; a pointer, so that only programs that show a scene contain the
+    /// function.
+    Scene(&'p ShownScene, SceneFrame),
 }
+
+/// [`ShownScene::frame`].
+type SceneFrame = for<'a> fn(&'a ShownScene, &'a [Object<'a>]) -> Frame<'a>;
 
 /// The description of a picture: camera, light, and what the picture shows.
 ///
@@ -393,6 +400,47 @@ impl<'p> Picture<'p> {
         }))
     }
 
+    /// Shows a scene. Its camera, size, samples, lights, background and renderer replace those of the picture; rectangles are in front of it.
+    ///
+    /// ```
+    /// # use glint_program::{Board, Program, host::Host};
+    /// use glint_program::core::fixed::{Q32_32, Turns};
+    /// use glint_program::{Picture, PictureError, ShownScene};
+    ///
+    /// # struct Sponge(ShownScene);
+    /// # impl Program for Sponge {
+    /// fn start(board: &mut Board) -> Self {
+    ///     Self(ShownScene::new(board, "field menger:3\nbackground sky\nsize 320 180", &[]).unwrap())
+    /// }
+    /// fn update(&mut self, board: &mut Board) {
+    ///     let azimuth = board.turns(Q32_32::lit("0.1"));
+    ///     self.0.scene.sphere.theta = azimuth;
+    ///     let _ = self.0.scene.set_sphere(self.0.scene.sphere);
+    /// }
+    /// fn draw<'p>(&'p self, picture: &mut Picture<'p>) -> Result<(), PictureError> {
+    ///     picture.scene(&self.0)
+    /// }
+    /// # }
+    /// # let mut host = Host::<Sponge>::start();
+    /// # host.run(1)?;
+    /// # let first = host.picture().to_vec();
+    /// # assert_eq!(first.len(), 320 * 180);
+    /// # host.run(60)?;
+    /// # assert!(host.picture() != first);
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`PictureError::Subjects`] if the picture shows something else.
+    pub fn scene(&mut self, scene: &'p ShownScene) -> Result<(), PictureError> {
+        if !self.meshes.is_empty() {
+            return Err(PictureError::Subjects);
+        }
+        self.backend = scene.scene.backend;
+        self.meshes = scene.objects();
+        self.set(Main::Scene(scene, ShownScene::frame))
+    }
+
     fn set(&mut self, main: Main<'p>) -> Result<(), PictureError> {
         if !matches!(self.main, Main::Meshes) {
             return Err(PictureError::Subjects);
@@ -462,6 +510,12 @@ impl<'p> Picture<'p> {
             }
             (Main::Edges(mesh, edges), []) => Subject::edges(*mesh, *edges),
             (Main::Lines(lines), []) => Subject::Wireframe(*lines),
+            (Main::Scene(scene, frame), objects) => {
+                return Ok(Frame {
+                    rectangles: &self.rectangles,
+                    ..frame(scene, objects)
+                });
+            }
             (Main::Edges(..) | Main::Lines(_), _) => return Err(PictureError::Subjects),
         };
         Ok(Frame {

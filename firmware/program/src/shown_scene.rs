@@ -1,0 +1,176 @@
+//! Scenes: console commands that set a picture, as scene files and the flash contain them.
+
+use core::fmt;
+
+use glint_core::camera::ViewError;
+use glint_core::mesh::Mesh;
+use glint_core::object::MAX_OBJECTS;
+use glint_core::wireframe::{self, CUBE, ProgramError};
+use glint_model::{Frame, Object};
+use glint_scene::{AnyBoard, Assets, LineError, Name, Scene, SettingError, lines};
+use heapless::Vec;
+
+use crate::Board;
+
+/// Reason why a scene cannot be shown.
+///
+/// ```
+/// # use glint_program::{Board, Picture, PictureError, Program, host::Host};
+/// use glint_program::{SceneError, ShownScene};
+///
+/// # struct Errors(String);
+/// # impl Program for Errors {
+/// fn start(board: &mut Board) -> Self {
+///     let error = ShownScene::new(board, "fov 60\nfog lots", &[]).err();
+///     # assert!(matches!(error, Some(SceneError::Line(_))));
+///     Self(error.map_or(String::new(), |error| error.to_string()))
+/// }
+/// #     fn update(&mut self, _: &mut Board) {}
+/// #     fn draw<'p>(&'p self, _: &mut Picture<'p>) -> Result<(), PictureError> { Ok(()) }
+/// # }
+/// # let host = Host::<Errors>::start();
+/// # let text = &host.program().0;
+/// assert!(text.starts_with("scene: line 2: fog: ") && text.contains("expected off or a number"), "{text}");
+/// ```
+#[derive(Debug)]
+pub enum SceneError<'t> {
+    /// A line is no command that sets the picture.
+    Line(LineError<'t>),
+    /// The scene excludes the option of a line, whose number is from 1.
+    Setting(usize, SettingError<'t>),
+    /// The program has no mesh with this name, or the scene replaces textures or shows a wireframe program by this name.
+    Missing(Name),
+    /// The start scene's camera is invalid.
+    View(ViewError),
+    /// The built-in wireframe program is invalid.
+    Program(ProgramError<'static>),
+}
+
+impl fmt::Display for SceneError<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("scene: ")?;
+        match self {
+            Self::Line(error) => error.fmt(f),
+            Self::Setting(line, error) => write!(f, "line {line}: {error}"),
+            Self::Missing(name) => write!(f, "expected a mesh of the program, found '{name}'"),
+            Self::View(error) => error.fmt(f),
+            Self::Program(error) => error.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for SceneError<'_> {}
+
+/// A scene with its meshes, for [`Picture::scene`](crate::Picture::scene).
+///
+/// ```
+/// # use glint_program::{Board, Picture, PictureError, Program, host::Host};
+/// use glint_program::ShownScene;
+///
+/// struct Rings(ShownScene);
+///
+/// impl Program for Rings {
+///     fn start(board: &mut Board) -> Self {
+///         // `glint scene show FILE` prints the commands of a scene file.
+///         let text = "background sky\nobject add torus\nobject colour 1 ff0000\nobject add sphere scale 0.4\nobject colour 2 0000ff";
+///         Self(ShownScene::new(board, text, &[]).unwrap())
+///     }
+///     fn update(&mut self, _: &mut Board) {}
+///     fn draw<'p>(&'p self, picture: &mut Picture<'p>) -> Result<(), PictureError> {
+///         picture.scene(&self.0)
+///     }
+/// }
+/// # let mut host = Host::<Rings>::start();
+/// # host.run(1)?;
+/// # let colours = |lit: [bool; 3]| host.picture().iter().filter(|&&pixel| {
+/// #     let rgb = glint_program::core::colour::Rgb565(pixel).to_rgb888();
+/// #     [0, 1, 2].iter().all(|&i: &usize| (rgb[i] > 64) == lit[i])
+/// # }).count();
+/// # assert!(colours([true, false, false]) > 1_000 && colours([false, false, true]) > 1_000);
+/// # Ok::<(), glint_program::host::HostError>(())
+/// ```
+pub struct ShownScene {
+    /// The options of the scene, such as its camera. The program may change them before each picture, except the names of meshes.
+    pub scene: Scene,
+    mesh: Option<Mesh<'static>>,
+    objects: Vec<Mesh<'static>, MAX_OBJECTS>,
+    program: wireframe::Program<'static>,
+}
+
+impl ShownScene {
+    /// The scene that results from the commands of `text`, one per line, on the board's start scene. Motions are left out, because the
+    /// program moves the scene. `meshes` are meshes of the program by their names; they have priority over built-in meshes.
+    ///
+    /// ```
+    /// # use glint_program::{Board, Picture, PictureError, Program, host::Host};
+    /// use glint_program::ShownScene;
+    /// # struct Ship(ShownScene);
+    /// # impl Program for Ship {
+    /// fn start(board: &mut Board) -> Self {
+    ///     let ship = board.cube();
+    ///     Self(ShownScene::new(board, "object add ship\nfov 40", &[("ship", ship)]).unwrap())
+    /// }
+    /// #     fn update(&mut self, _: &mut Board) {}
+    /// #     fn draw<'p>(&'p self, picture: &mut Picture<'p>) -> Result<(), PictureError> { picture.scene(&self.0) }
+    /// # }
+    /// # Host::<Ship>::start().run(1)?;
+    /// # Ok::<(), glint_program::host::HostError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`SceneError`].
+    pub fn new<'t>(
+        board: &mut Board,
+        text: &'t str,
+        meshes: &[(&str, Mesh<'static>)],
+    ) -> Result<Self, SceneError<'t>> {
+        let mut scene = Scene::new(board.defaults()).map_err(SceneError::View)?;
+        for line in lines(text) {
+            let (number, line) = line.map_err(SceneError::Line)?;
+            let applied = line.apply(&mut scene, &mut AnyBoard);
+            applied.map_err(|error| SceneError::Setting(number, error))?;
+        }
+        if let Some(name) = scene.texture.take().or(scene.program.take()) {
+            return Err(SceneError::Missing(name));
+        }
+        let mut find = |name: &str| {
+            let own = meshes.iter().find(|(own, _)| *own == name);
+            let found = own.map(|(_, mesh)| *mesh).or_else(|| board.named(name));
+            // The name of a scene's mesh is not longer than a name.
+            found.ok_or_else(|| SceneError::Missing(Name::try_from(name).unwrap_or_default()))
+        };
+        let mesh = scene.shown_mesh().map(&mut find).transpose()?;
+        let mut objects = Vec::new();
+        if scene.shows_objects() {
+            for object in &scene.objects {
+                // The list has as many places as that of the scene.
+                let _ = objects.push(find(&object.mesh)?);
+            }
+        }
+        let program = wireframe::Program::new_checked(CUBE.as_flattened());
+        Ok(Self {
+            scene,
+            mesh,
+            objects,
+            program: program.map_err(SceneError::Program)?,
+        })
+    }
+
+    /// The objects with their placements.
+    pub(crate) fn objects(&self) -> Vec<Object<'_>, MAX_OBJECTS> {
+        let placed = self.scene.objects.iter().zip(&self.objects);
+        placed
+            .map(|(object, mesh)| self.scene.object(&object.place, *mesh))
+            .collect()
+    }
+
+    /// The scene as a frame, with the objects of [`objects`](Self::objects).
+    pub(crate) fn frame<'a>(&'a self, objects: &'a [Object<'a>]) -> Frame<'a> {
+        self.scene.frame(Assets {
+            mesh: self.mesh,
+            objects,
+            replacement_texture: None,
+            program: self.program,
+        })
+    }
+}
