@@ -20,7 +20,7 @@ pub struct File {
 }
 
 /// The files, starting with the HTML page.
-pub const FILES: [File; 10] = [
+pub const FILES: [File; 11] = [
     file("index.html", HTML, include_str!("../web/index.html")),
     file("page.css", CSS, include_str!("../web/page.css")),
     file("page.js", SCRIPT, include_str!("../web/page.js")),
@@ -31,6 +31,7 @@ pub const FILES: [File; 10] = [
     file("motion.js", SCRIPT, include_str!("../web/motion.js")),
     file("upload.js", SCRIPT, include_str!("../web/upload.js")),
     file("curves.js", SCRIPT, include_str!("../web/curves.js")),
+    file("tour.js", SCRIPT, include_str!("../web/tour.js")),
 ];
 
 const fn file(name: &'static str, media: &'static str, content: &'static str) -> File {

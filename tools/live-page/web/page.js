@@ -7,6 +7,7 @@ import { startMotion } from "./motion.js";
 import { startUpload } from "./upload.js";
 import { startCurves } from "./curves.js";
 import { startOrbit } from "./orbit.js";
+import { startTour } from "./tour.js";
 
 const element = (id) => document.getElementById(id);
 let holder = "nobody";
@@ -75,6 +76,10 @@ function showLists({ commands, ...shown }) {
   }
   followAddress();
 }
+
+startTour((list, name) => {
+  if (holder === "you" && lists?.[list].includes(name)) send({ type: "choose", list, name });
+});
 
 // A button that shows a scene, a mesh or a field, or starts a program.
 function choice(name, choose) {
