@@ -97,7 +97,10 @@ CHUNK = Record("ChunkHeader", "Header of a chunk of a mesh.", (
 ), rtl="chunk_t")
 
 VERTEX = Record("Vertex", "Vertex of a mesh.", (
-    _vector("position", "place"), _vector("normal", "normal of the surface"), _COLOUR, _reserved(16),
+    _vector("position", "place"), _vector("normal", "normal of the surface"),
+    Field("colour", 16, "the highest 5, 6 and 5 bits of red, green and blue: RGB565", rust="Rgb565"),
+    Field("fine", 8, "the lowest 3, 2 and 3 bits of red, green and blue, XOR the highest bits of the channel; 0 for a colour of RGB565"),
+    _reserved(8),
 ), rtl="vertex_t")
 
 TRIANGLE = Record("Triangle", "Triangle of a mesh.", (

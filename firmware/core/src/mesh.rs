@@ -238,6 +238,30 @@ impl<'a> Mesh<'a> {
     }
 }
 
+impl Vertex {
+    /// The colour: red, green and blue of 8 bits each.
+    pub const fn rgb888(&self) -> [u8; 3] {
+        let [r, g, b] = self.colour.to_rgb888();
+        [
+            r ^ self.fine >> 5,
+            g ^ (self.fine >> 3 & 3),
+            b ^ (self.fine & 7),
+        ]
+    }
+
+    /// The vertex with another colour: red, green and blue of 8 bits each.
+    #[must_use]
+    pub const fn with_rgb888(self, [r, g, b]: [u8; 3]) -> Self {
+        let colour = Rgb565((r as u16 >> 3) << 11 | (g as u16 >> 2) << 5 | b as u16 >> 3);
+        let [red, green, blue] = colour.to_rgb888();
+        Self {
+            colour,
+            fine: (r ^ red) << 5 | (g ^ green) << 3 | (b ^ blue),
+            ..self
+        }
+    }
+}
+
 /// A part of a mesh: vertices, and triangles that use these vertices by their indices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Chunk<'a> {

@@ -344,6 +344,7 @@ impl Writer<'_> {
             position,
             normal,
             colour,
+            fine: 0,
         };
         *self.records.get_mut(HEADERS + usize::from(self.vertices))? = vertex.to_bytes();
         self.vertices += 1;

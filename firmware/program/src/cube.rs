@@ -59,6 +59,7 @@ const fn bytes() -> [u8; LENGTH] {
             position: corner_at(corner, ONE / 2),
             normal: corner_at(corner, DIAGONAL),
             colour: Rgb565(0xffff),
+            fine: 0,
         };
         writer = writer.put(&vertex.to_bytes());
         corner += 1;

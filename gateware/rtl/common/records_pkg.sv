@@ -18,7 +18,8 @@ package records_pkg;
 
     // Vertex of a mesh.
     typedef struct packed {
-        logic [15:0] reserved_112;
+        logic [7:0] reserved_120;
+        logic [7:0] fine;
         logic [15:0] colour;
         logic [2:0][15:0] normal;
         logic [2:0][15:0] position;

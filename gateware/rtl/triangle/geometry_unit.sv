@@ -290,12 +290,12 @@ module geometry_unit #(
         end
 
         if (SMOOTH) begin : light
-            logic [40:0] projected_light;
+            triangle_pkg::light_t projected_light;
 
             vertex_light vertex_light (
                 .clk, .rst(rst || restart), .cull_back(flags.cull), .row_light(view.row_light),
                 .light_colour(parameters.light_colour), .ambient(parameters.ambient), .take(data_valid[1] && data_ready[1]),
-                .in_normal(vertex.normal), .in_colour(flags.recolour ? parameters.colour : vertex.colour),
+                .in_normal(vertex.normal), .in_colour(flags.recolour ? {8'd0, parameters.colour} : {vertex.fine, vertex.colour}),
                 .give(projected_valid && projected_ready), .out_light(projected_light)
             );
 

@@ -254,7 +254,9 @@ module setup #(
     if (SMOOTH || TEXTURE) begin : light
         // The following signals are vectors, because Yosys does not support arrays here.
         logic [LIT_BITS-1:0]   lit_1;
-        logic [3*41-1:0]       lights;
+        localparam int unsigned BITS = triangle_pkg::LIGHT_BITS;
+
+        logic [3*BITS-1:0]     lights;
         logic [1:0]            place;
         logic [16:0]           share;
         logic                  is_coordinate;
@@ -322,9 +324,9 @@ module setup #(
 
         for (genvar i = 0; i < 3; i++) begin : vertices
             if (SMOOTH) begin : lit_vertices
-                assign lights[41 * i +: 41] = lit_1[LIGHT_BITS * i +: 41];
+                assign lights[BITS * i +: BITS] = lit_1[LIGHT_BITS * i +: BITS];
             end else begin : flat_vertices
-                assign lights[41 * i +: 41] = '0;
+                assign lights[BITS * i +: BITS] = '0;
             end
         end
 

@@ -25,7 +25,7 @@ module setup_light #(
     input  wire  [24:0] w20,
     input  wire         front,
     input  wire         swap,   // vertices 1 and 2 of the mesh are exchanged
-    input  wire  [2:0][40:0] lights, // triangle_pkg::light_t each, numbered as in the mesh
+    input  wire  [2:0][triangle_pkg::LIGHT_BITS-1:0] lights, // triangle_pkg::light_t each, numbered as in the mesh
     // With TEXTURE: `is_coordinate` is high if the channel is a texture coordinate. Its share, u0.17, arrives one clock after
     // `place`. `linear` is high in orthographic projection.
     input  wire         is_coordinate,
@@ -43,7 +43,7 @@ module setup_light #(
     logic        [1:0]    vertex;
     logic        [24:0]   w;
     logic        [17:0]   half;
-    logic        [13:0]   lit;
+    logic        [15:0]   lit;
     logic        [16:0]   factor;
     logic signed [43:0]   p;
     triangle_pkg::light_t light;
@@ -56,14 +56,14 @@ module setup_light #(
             2'd1:    light = lights[1];
             default: light = lights[2];
         endcase
-        // L of the vertex in this channel, with 14 fraction bits; 0 if the light belongs to the other side of the triangle.
+        // L of the vertex in this channel, u0.16; 0 if the light belongs to the other side of the triangle.
         unique case (round)
-            2'd0:    lit = {light.red, 1'b0};
+            2'd0:    lit = light.red;
             2'd1:    lit = light.green;
-            default: lit = {light.blue, 1'b0};
+            default: lit = light.blue;
         endcase
         if (light.back == front) lit = '0;
-        factor = TEXTURE && is_coordinate ? share : {lit, 3'd0};
+        factor = TEXTURE && is_coordinate ? share : {lit, 1'b0};
     end
 
     // The product is w·L + L/2 + 1/2. Half a depth code is 2^5 units of w; half a unit of P is 2^16 units of the product.

@@ -19,14 +19,17 @@ package triangle_pkg;
     } projected_t;
 
     // Light of a vertex with smooth shading: whether it belongs to back faces, and the shaded colour L of each channel
-    // (docs/formats/triangle.md, "Smooth shading"), red and blue in units of 2^-13, green in units of 2^-14. Builds without smooth
-    // shading replace this type and records_pkg::planes_t by one bit, 0.
+    // (docs/formats/triangle.md, "Smooth shading"), u0.16. Builds without smooth shading replace this type and records_pkg::planes_t by
+    // one bit, 0.
     typedef struct packed {
         logic        back;
-        logic [12:0] red;
-        logic [13:0] green;
-        logic [12:0] blue;
+        logic [15:0] red;
+        logic [15:0] green;
+        logic [15:0] blue;
     } light_t;
+
+    // Number of bits of a light_t.
+    localparam int unsigned LIGHT_BITS = 49;
 
     // The planes of a triangle other than its depth, from the lowest bits: the planes of light with SMOOTH, or of texture coordinates
     // with TEXTURE, then values that are constant on the triangle: whether it is smooth, and the other fields of
@@ -46,7 +49,7 @@ package triangle_pkg;
     // Returns the number of bits of a vertex in addition to its position: from the lowest bits a light_t with SMOOTH, and the
     // texture coordinates with TEXTURE; a single bit, 0, in a build with neither.
     function automatic int unsigned vertex_bits(input bit smooth, input bit texture);
-        vertex_bits = smooth || texture ? (smooth ? 41 : 0) + (texture ? 64 : 0) : 1;
+        vertex_bits = smooth || texture ? (smooth ? LIGHT_BITS : 0) + (texture ? 64 : 0) : 1;
     endfunction
 
     // Returns the number of 128-bit words of a descriptor in memory.

@@ -3,6 +3,9 @@
 // front faces are visible, so the light belongs to front faces. Without `cull_back`, the light belongs to the side that faces the light
 // source; the other side is dark, so ambient light is not allowed.
 //
+// A channel of the colour has 8 bits: `fine` XOR the bits that widen RGB565. Less its highest bits, 3 of red and blue and 2 of green, it is
+// in steps of RGB565, with fraction bits, as in the input of colour_pkg::rounded.
+//
 // One multiplier computes six products: three for N·l, and one for the share of each channel. A second multiplier computes the three
 // products of colour and share. A vertex takes 6 clocks, in step with `vertex_stage`: `take` is high for one clock when a vertex enters
 // vertex_stage. The light waits in a FIFO until the position of its vertex leaves vertex_stage; `give` then removes the light from the
@@ -22,9 +25,9 @@ module vertex_light (
     input  wire  [2:0][8:0]  ambient,
     input  wire              take,
     input  wire  [2:0][15:0] in_normal,
-    input  wire  [15:0]      in_colour,
+    input  wire  [23:0]      in_colour,    // {fine, colour} of records_pkg::vertex_t
     input  wire              give,
-    output logic [40:0]      out_light // {to back faces, red u13, green u14, blue u13}
+    output triangle_pkg::light_t out_light
 );
     // The FIFO has more entries than vertex_stage can hold vertices.
     localparam int unsigned PLACES = 16;
@@ -32,15 +35,16 @@ module vertex_light (
     // Bit k of `since` is high when a vertex entered k + 1 clocks ago.
     logic        [18:0]      since;
     logic        [2:0][15:0] normal;
-    logic        [15:0]      colour, colour_held, colour_late;
+    logic        [23:0]      colour, colour_held, colour_late;
+    logic        [7:0]       wide, fine;
+    logic        [2:0]       highest;
     logic signed [24:0]      a, channel;
     logic signed [17:0]      b;
     logic signed [43:0]      addend, c, p, product;
     logic        [15:0]      high, rounded;
     logic        [8:0]       intensity, share;
     logic                    back, back_held, back_late, dark, whole, carry;
-    logic        [12:0]      red;
-    logic        [13:0]      green;
+    logic        [15:0]      red, green;
 
     always_comb begin
         case (1'b1)
@@ -64,11 +68,13 @@ module vertex_light (
             default:   addend = '0;
         endcase
         c = since[3] || since[4] ? p : addend;
+        fine = colour_late[23:16];
         case (1'b1)
-            since[13]: channel = {20'b0, colour_late[15:11]};
-            since[14]: channel = {19'b0, colour_late[10:5]};
-            default:   channel = {20'b0, colour_late[4:0]};
+            since[13]: {highest, wide} = {colour_late[15:13], colour_late[15:11], colour_late[15:13] ^ fine[7:5]};
+            since[14]: {highest, wide} = {1'b0, colour_late[10:9], colour_late[10:5], colour_late[10:9] ^ fine[4:3]};
+            default:   {highest, wide} = {colour_late[4:2], colour_late[4:0], colour_late[4:2] ^ fine[2:0]};
         endcase
+        channel = {17'b0, wide - {5'b0, highest}};
     end
 
     multiply_add #(.BITS(44)) dsp (.clk, .enable(1'b1), .a, .b, .c, .p);
@@ -95,8 +101,8 @@ module vertex_light (
         if (since[9])  back_held   <= back && !cull_back;
         if (since[11]) colour_late <= colour_held;
         if (since[13]) back_late   <= back_held;
-        if (since[16]) red         <= product[12:0];
-        if (since[17]) green       <= product[13:0];
+        if (since[16]) red         <= product[15:0];
+        if (since[17]) green       <= product[15:0];
         share <= p[17:16] != '0 ? 9'h100 : {1'b0, p[15:8]};
         if (rst) since <= '0;
     end
@@ -104,12 +110,12 @@ module vertex_light (
     // The FIFO is never full, and never empty while `give` is high.
     logic room, valid;
 
-    fifo #(.WIDTH(41), .DEPTH(PLACES)) finished (
-        .clk, .rst, .in_valid(since[18]), .in_ready(room), .in_data({back_late, red, green, product[12:0]}),
+    fifo #(.WIDTH(triangle_pkg::LIGHT_BITS), .DEPTH(PLACES)) finished (
+        .clk, .rst, .in_valid(since[18]), .in_ready(room), .in_data({back_late, red, green, product[15:0]}),
         .out_valid(valid), .out_ready(give), .out_data(out_light)
     );
 
-    wire _unused = &{1'b0, rounded[0], product[43:14], room, valid};
+    wire _unused = &{1'b0, rounded[0], product[43:16], room, valid};
 endmodule
 
 `default_nettype wire

@@ -339,8 +339,9 @@ fn index(
             let vertex = Vertex {
                 position: rounded.position(corner),
                 normal: direction(normal),
-                colour: rgb565(colour.unwrap_or(no_colour)),
-            };
+                ..Vertex::default()
+            }
+            .with_rgb888(colour.unwrap_or(no_colour).0);
             let [s, t] = if texture == 0 {
                 [0; 2]
             } else {
@@ -350,7 +351,7 @@ fn index(
                 .entry(VertexKey(
                     vertex.position,
                     vertex.normal,
-                    vertex.colour,
+                    vertex.rgb888(),
                     [s, t],
                 ))
                 .or_insert_with(|| {
@@ -378,7 +379,7 @@ fn index(
 
 /// Position, normal, colour and texture coordinates of a vertex. Equal vertices become one vertex of the mesh.
 #[derive(PartialEq, Eq, Hash)]
-struct VertexKey([i16; 3], [i16; 3], Rgb565, [i32; 2]);
+struct VertexKey([i16; 3], [i16; 3], [u8; 3], [i32; 2]);
 
 /// Rounds a unit vector to Q2.14, to nearest.
 fn direction(unit: Vector) -> [i16; 3] {
@@ -599,5 +600,16 @@ mod tests {
         polygons.point_colours = [0, 0, 255, 255].map(|green| Rgb8([0, green, 255])).into();
         let mean = Rgb565::from_rgb888([0, 170, 255]).0;
         assert_eq!(colours(&polygons), (vec![0xf800, mean], 4));
+    }
+
+    /// Colours of points pass through a GLM unchanged, also if they are equal in RGB565.
+    #[test]
+    fn colours_of_points_keep_eight_bits() {
+        let mut polygons = soup(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[&[0, 1, 2]]);
+        let colours = [[128, 128, 135], [131, 129, 130], [131, 129, 131]].map(Rgb8);
+        polygons.point_colours = colours.into();
+        let (bytes, _) = convert(&polygons, keep()).unwrap();
+        let read = glm::parse(&bytes).unwrap();
+        assert_eq!(read.point_colours, colours);
     }
 }

@@ -16,8 +16,8 @@ pub struct Rgb8(pub [u8; 3]);
 impl Rgb8 {
     /// White, the colour of a surface that shows its texture unchanged.
     pub const WHITE: Self = Self([255; 3]);
-    /// Colour of surfaces without a colour: a light warm grey.
-    pub const DEFAULT: Self = Self([0xd8, 0xd8, 0xd0]);
+    /// Colour of surfaces without a colour: a light warm grey, which RGB565 represents exactly.
+    pub const DEFAULT: Self = Self([0xd6, 0xd7, 0xce]);
 
     /// Converts three intensities from 0 to 1; values outside this range saturate. A colour with a
     /// NaN counts as missing.

@@ -44,6 +44,7 @@ pub fn mesh(triangles: &[Triangle], most: usize) -> Vec<u8> {
                 position,
                 normal: [(); 3].map(|()| random.random_range(-reach..=reach)),
                 colour: Rgb565(random.random()),
+                fine: random.random(),
             };
             body.extend(vertex.to_bytes());
         }
@@ -144,6 +145,7 @@ fn squares(layers: &[(f64, [u8; 2])], textures: &[Vec<u8>], repeats: f64) -> Vec
             position: [x, y, height].map(|c| (c * 16_383.0) as i16),
             normal: up,
             colour: Rgb565::WHITE,
+            fine: 0,
         }));
         elements.extend(corners.map(|corner| {
             let [s, t] = corner.map(|c| (c * repeats * 65_536.0) as i32);

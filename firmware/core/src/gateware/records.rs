@@ -162,8 +162,10 @@ pub struct Vertex {
     pub position: [i16; 3],
     /// Normal of the surface, s2.14.
     pub normal: [i16; 3],
-    /// RGB565.
+    /// The highest 5, 6 and 5 bits of red, green and blue: RGB565.
     pub colour: Rgb565,
+    /// The lowest 3, 2 and 3 bits of red, green and blue, XOR the highest bits of the channel; 0 for a colour of RGB565.
+    pub fine: u8,
 }
 
 impl Vertex {
@@ -175,8 +177,10 @@ impl Vertex {
     pub const NORMAL: Range<usize> = 6..12;
     /// Byte range of the field `colour`.
     pub const COLOUR: Range<usize> = 12..14;
+    /// Byte range of the field `fine`.
+    pub const FINE: Range<usize> = 14..15;
     /// Byte range of the field `reserved`.
-    pub const RESERVED: Range<usize> = 14..16;
+    pub const RESERVED: Range<usize> = 15..16;
 
     /// Returns the record with these bytes in memory.
     pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {
@@ -184,6 +188,7 @@ impl Vertex {
             position: [i16::from_le_bytes(field(bytes, 0)), i16::from_le_bytes(field(bytes, 2)), i16::from_le_bytes(field(bytes, 4))],
             normal: [i16::from_le_bytes(field(bytes, 6)), i16::from_le_bytes(field(bytes, 8)), i16::from_le_bytes(field(bytes, 10))],
             colour: Rgb565(u16::from_le_bytes(field(bytes, 12))),
+            fine: u8::from_le_bytes(field(bytes, 14)),
         }
     }
 
@@ -196,7 +201,8 @@ impl Vertex {
         let [b8, b9] = self.normal[1].to_le_bytes();
         let [b10, b11] = self.normal[2].to_le_bytes();
         let [b12, b13] = self.colour.0.to_le_bytes();
-        [b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, 0, 0]
+        let b14 = self.fine;
+        [b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, 0]
     }
 }
 

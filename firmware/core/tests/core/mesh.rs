@@ -14,6 +14,7 @@ fn vertex(i: u32) -> Vertex {
         position: [x >> 16, x >> 10, x >> 4].map(|x| (x as i16) >> 1),
         normal: [x >> 3, x >> 7, x >> 11].map(|x| x as i16),
         colour: Rgb565(x as u16),
+        fine: (x >> 19) as u8,
     }
 }
 
@@ -178,6 +179,7 @@ fn the_layout_is_that_of_the_formats() {
         position: [1, -2, 3],
         normal: [-4, 5, 0x4000],
         colour: Rgb565(0xF81F),
+        fine: 0x42,
     }];
     let triangles = [IndexedTriangle {
         indices: [0; 3],
@@ -188,12 +190,28 @@ fn the_layout_is_that_of_the_formats() {
     #[rustfmt::skip]
     let expected = [
         b'G', b'L', b'M', b'2', 80, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0,
-        1, 0, 0, 0, 4, 0, 0, 0, 250, 169, 58, 19, 0, 0, 0, 0,
+        1, 0, 0, 0, 4, 0, 0, 0, 25, 178, 99, 172, 0, 0, 0, 0,
         1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
-        1, 0, 0xFE, 0xFF, 3, 0, 0xFC, 0xFF, 5, 0, 0, 0x40, 0x1F, 0xF8, 0, 0,
+        1, 0, 0xFE, 0xFF, 3, 0, 0xFC, 0xFF, 5, 0, 0, 0x40, 0x1F, 0xF8, 0x42, 0,
         0, 0, 0, 0, 0, 0, 0xE0, 0x07, 0, 0x40, 0, 0, 0xFF, 0xFF, 0, 0,
     ];
     assert_eq!(encode(&vertices, &triangles).unwrap(), expected);
+}
+
+/// A vertex keeps all 8 bits of each channel. A colour of RGB565, widened by bit replication, has the bytes of earlier meshes.
+#[test]
+fn colours_of_vertices_have_eight_bits() {
+    for value in 0..=u8::MAX {
+        for colour in [[value, 0xA5, 0], [255, value, 0x5A], [0x3C, 7, value]] {
+            let vertex = vertex(3).with_rgb888(colour);
+            let read = Vertex::from_bytes(&vertex.to_bytes());
+            assert_eq!((read, read.rgb888()), (vertex, colour));
+        }
+    }
+    for colour in (0..=u16::MAX).map(Rgb565) {
+        let vertex = Vertex::default().with_rgb888(colour.to_rgb888());
+        assert_eq!((vertex.colour, vertex.fine), (colour, 0));
+    }
 }
 
 #[test]
@@ -292,7 +310,7 @@ fn every_field_is_checked() {
         (36, 3, 36, triangles),
         (36, 1, 128, "0 bytes after the last chunk, found 16"),
         (40, 9, 40, "0 (reserved), found 9"),
-        (60, 1 << 16, 62, "0 (reserved), found 1"),
+        (60, 1 << 24, 63, "0 (reserved), found 1"),
         (124, 1 << 24, 127, "0 (reserved), found 1"),
     ] {
         let mut bytes = small();

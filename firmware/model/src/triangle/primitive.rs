@@ -255,11 +255,14 @@ pub fn vertex_light(
 
 /// The light at a vertex, for both sides of a surface.
 pub fn light_of(frame: &MeshSetup, options: &Options, vertex: &Vertex) -> Light {
-    let colour = options.colour.unwrap_or(vertex.colour);
+    let channels = match options.colour {
+        None => Rgb565::with_fractions(vertex.rgb888()),
+        Some(colour) => colour.fractions(),
+    };
     let normal = options.turned(vertex.normal);
     match options.light {
-        None => Light::new(colour, normal, &frame.light, |i| [i; 3]),
-        Some(light) => light_in(light, frame, options, colour, normal),
+        None => Light::new(channels, normal, &frame.light, |i| [i; 3]),
+        Some(light) => light_in(light, frame, options, channels, normal),
     }
 }
 
@@ -271,10 +274,10 @@ fn light_in(
     light: &MeshLight,
     frame: &MeshSetup,
     options: &Options,
-    colour: Rgb565,
+    channels: [u8; 3],
     normal: [i16; 3],
 ) -> Light {
-    let lit = Light::new(colour, normal, &frame.light, |i| light.shares(i));
+    let lit = Light::new(channels, normal, &frame.light, |i| light.shares(i));
     if options.winding == Winding::Mesh {
         return lit;
     }

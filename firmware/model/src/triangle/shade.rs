@@ -27,24 +27,23 @@ pub fn lit(colour: Rgb565, shares: [u32; 3]) -> Rgb565 {
 }
 
 /// The light L of a vertex (docs/formats/triangle.md, "Smooth shading"): red, green and blue after shading. Each channel is a fraction of
-/// the channel's range, u0.14, at most 63/64.
+/// the channel's range, u0.16, at most 63/64.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Lit(pub [u16; 3]);
 
 impl Lit {
-    /// Multiplies each channel of a colour by a factor (u1.8, at most 1), without rounding.
-    pub fn new(colour: Rgb565, shares: [u32; 3]) -> Self {
-        let channels = colour.channels();
-        let [r, g, b] = [0, 1, 2].map(|i| u32::from(channels[i]) * shares[i]);
-        Self([2 * r, g, 2 * b].map(|x| x as u16))
+    /// Multiplies each channel of a colour, with the fraction bits of [`Rgb565::with_fractions`], by a factor (u1.8, at most 1), without
+    /// rounding.
+    pub fn new(channels: [u8; 3], shares: [u32; 3]) -> Self {
+        Self([0, 1, 2].map(|i| (u32::from(channels[i]) * shares[i]) as u16))
     }
 
     /// Returns the value P = L·(w + ½) of each channel, u18.6, rounded to nearest. L is the channel's light, and `w` is the vertex's depth
     /// code before it is rounded to an integer (u18.6). Between the vertices P is interpolated linearly.
     pub fn weighted(self, w: u32) -> [u32; 3] {
-        // The product has 24 + 14 bits.
+        // The product has 24 + 16 bits.
         self.0
-            .map(|x| nearest(i64::from(x) * i64::from(w + HALF_CODE), 14) as u32)
+            .map(|x| nearest(i64::from(x) * i64::from(w + HALF_CODE), 16) as u32)
     }
 }
 
@@ -60,15 +59,15 @@ pub struct Light {
 }
 
 impl Light {
-    /// Returns the light of a vertex with this colour and normal. `row` is the row of the light, and `shares` returns the factor of each
-    /// channel for an intensity.
+    /// Returns the light of a vertex with this colour, as for [`Lit::new`], and this normal. `row` is the row of the light, and `shares`
+    /// returns the factor of each channel for an intensity.
     pub fn new(
-        colour: Rgb565,
+        channels: [u8; 3],
         normal: [i16; 3],
         row: &[i32; 3],
         shares: impl Fn(u32) -> [u32; 3],
     ) -> Self {
-        let to = |facing| Lit::new(colour, shares(intensity(normal, row, facing)));
+        let to = |facing| Lit::new(channels, shares(intensity(normal, row, facing)));
         Self {
             front: to(Facing::Front),
             back: to(Facing::Back),

@@ -6,6 +6,7 @@ use glint_core::colour::{Rgb565, Rounding, Shading};
 use glint_core::field::Field;
 use glint_core::fixed::U4_28;
 use glint_core::light::Background;
+use glint_core::mesh::Vertex;
 use glint_core::picture::Size;
 use glint_core::rectangle::{Part, Rectangle};
 use glint_core::texture::{Filter, Sampler, Source, Texture, Wrap, encode};
@@ -84,7 +85,7 @@ fn ramp(lit: [Lit; 3], depths: [u32; 3]) -> ([Picture; 2], Vec<Option<[f64; 3]>>
             let whole: f64 = (0..3).map(|k| parts[k] * depth(k)).sum();
             Some([0, 1, 2].map(|channel| {
                 let light =
-                    |k: usize| f64::from(lit[k].0[channel]) * [32.0, 64.0, 32.0][channel] / 16384.0;
+                    |k: usize| f64::from(lit[k].0[channel]) * [32.0, 64.0, 32.0][channel] / 65536.0;
                 (0..3).map(|k| parts[k] * depth(k) * light(k)).sum::<f64>() / whole
             }))
         });
@@ -103,10 +104,10 @@ fn smooth_ramps_keep_their_mean() {
             _ => [0; 3].map(|_| random.integer(1 << 22, (1 << 24) - 256) as u32),
         };
         // The change over the picture: from a small change to all steps of a channel.
-        let reach = [64, 600, 4096, 7936][round % 4];
-        let start = random.integer(0, 7936 - reach);
+        let reach = [512, 4800, 32_768, 63_488][round % 4];
+        let start = random.integer(0, 63_488 - reach);
         let lit = [0; 3].map(|_| {
-            let light = 2 * random.integer(start, start + reach);
+            let light = random.integer(start, start + reach);
             Lit([light, light, light].map(|light| light as u16))
         });
         let (pictures, exact) = ramp(lit, depths);
@@ -130,6 +131,37 @@ fn smooth_ramps_keep_their_mean() {
     );
     assert!(dithered <= 1.0 && step <= 0.5 + 1.0 / 31.0 + 43.0 / 1000.0);
     assert!(nearest > 3.0);
+}
+
+/// A ramp between colours of 8 bits that are equal in RGB565 is drawn in their colours: the picture has several colours, and their mean
+/// changes from block to block.
+#[test]
+fn ramps_within_a_step_of_rgb565() {
+    let corners = [[128, 128, 135], [135, 131, 128], [131, 130, 131]];
+    let equal = Rgb565(0x8410);
+    assert!(
+        corners
+            .iter()
+            .all(|&corner| Rgb565::from_rgb888(corner) == equal)
+    );
+    let lit = corners.map(|corner| {
+        let vertex = Vertex::default().with_rgb888(corner);
+        Lit::new(Rgb565::with_fractions(vertex.rgb888()), [256; 3])
+    });
+    let ([dithered, _], exact) = ramp(lit, [FLAT; 3]);
+    let worst = worst_mean(&dithered, &exact);
+    let earlier = worst_mean(
+        &dithered,
+        &vec![Some(equal.channels().map(f64::from)); exact.len()],
+    );
+    println!(
+        "error of the mean: {worst:.2} of 255; from the single colour in RGB565: {earlier:.2}"
+    );
+    assert!(worst < 0.6 && earlier > 2.5, "{worst}, {earlier}");
+    let mut colours = dithered.colour.clone();
+    colours.sort_unstable();
+    colours.dedup();
+    assert!(colours.len() > 2, "{colours:04x?}");
 }
 
 /// Draws a rectangle that covers the whole picture.

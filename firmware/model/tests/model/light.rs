@@ -77,6 +77,7 @@ fn equal_vertices_are_lit_as_flat_triangles() {
                     position: [0; 3].map(|_| random.integer(-30_000, 30_000) as i16),
                     normal,
                     colour,
+                    fine: 0,
                 }));
                 IndexedTriangle {
                     indices: [3 * i, 3 * i + 1, 3 * i + 2],
@@ -103,7 +104,7 @@ fn equal_vertices_are_lit_as_flat_triangles() {
         assert_eq!(flat.len(), smooth.len());
         for (flat, smooth) in flat.iter().zip(&smooth) {
             for Lit([red, green, blue]) in smooth.lit.unwrap() {
-                let rounded = [(red, 9), (green, 8), (blue, 9)]
+                let rounded = [(red, 11), (green, 10), (blue, 11)]
                     .map(|(x, cut)| (u32::from(x) + (1 << (cut - 1))) >> cut);
                 assert_eq!(rounded, flat.colour.channels().map(u32::from), "{light:?}");
                 compared += 1;

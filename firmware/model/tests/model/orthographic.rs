@@ -333,7 +333,8 @@ fn light_against_f64() {
         let Some((triangle, Setup { bounds, .. })) = set_up(vertices, SIZE) else {
             continue;
         };
-        let mut light = [0; 3].map(|_| Lit::new(Rgb565(random.bits() as u16), [256; 3]));
+        let mut light =
+            [0; 3].map(|_| Lit::new(Rgb565(random.bits() as u16).fractions(), [256; 3]));
         if round % 4 == 0 {
             light = [light[0]; 3];
         }
@@ -357,7 +358,7 @@ fn light_against_f64() {
                 part(place[0], place[1]),
             ];
             for (channel, found) in Rgb565(picture.colour[i]).channels().into_iter().enumerate() {
-                let steps = [32.0, 64.0, 32.0][channel] / 16384.0;
+                let steps = [32.0, 64.0, 32.0][channel] / 65536.0;
                 let exact: f64 = (0..3)
                     .map(|k| parts[k] * f64::from(light[k].0[channel]) * steps)
                     .sum();

@@ -15,6 +15,11 @@ fn any_colour(random: &mut Random) -> Rgb565 {
     Rgb565(random.bits() as u16)
 }
 
+/// A colour of 8 bits per channel, with fraction bits.
+fn any_channels(random: &mut Random) -> [u8; 3] {
+    Rgb565::with_fractions([0; 3].map(|_| random.bits() as u8))
+}
+
 /// With equal light at all vertices, all pixels have exactly the colour of the light, at all depths and for triangles of any shape.
 #[test]
 fn equal_light_is_a_flat_colour() {
@@ -33,7 +38,11 @@ fn equal_light_is_a_flat_colour() {
             continue;
         };
         let colour = any_colour(&mut random);
-        let setup = Setup::smooth(&triangle, bounds, &[Lit::new(colour, [256; 3]); 3]);
+        let setup = Setup::smooth(
+            &triangle,
+            bounds,
+            &[Lit::new(colour.fractions(), [256; 3]); 3],
+        );
         let mut picture = Picture::blank(SIZE);
         covered += draw(&setup, Rgb565(0), &mut picture.target()).covered;
         for (found, code) in picture.colour.iter().zip(&picture.depth) {
@@ -74,6 +83,21 @@ fn quotients_of_anything() {
     }
 }
 
+/// A channel of 8 bits at full light is the channel of the pixel, at all depths, if the planes are exact.
+#[test]
+fn channels_keep_their_eight_bits() {
+    let mut random = Random(5);
+    for value in 0..=u8::MAX {
+        let channels = Rgb565::with_fractions([value; 3]);
+        for _ in 0..400 {
+            let depth = random.integer(228 << 14, ((1 << 18) - 4) << 14) as u32;
+            let Lit(light) = Lit::new(channels, [256; 3]);
+            let light = light.map(|light| ((u64::from(light) * u64::from(depth)) >> 16) as u32);
+            assert_eq!(colour(light, depth, Rounding::Dithered), channels);
+        }
+    }
+}
+
 /// The light of a vertex equals flat shading with the normal of the vertex, for each side of the triangle. The light of one side is 0.
 #[test]
 fn light_is_that_of_flat_shading() {
@@ -83,13 +107,13 @@ fn light_is_that_of_flat_shading() {
     for _ in 0..10_000 {
         let normal = any_vector(&mut random);
         let colour = any_colour(&mut random);
-        let light = Light::new(colour, normal, &frame.n, |i| [i; 3]);
+        let light = Light::new(colour.fractions(), normal, &frame.n, |i| [i; 3]);
         for facing in [Facing::Front, Facing::Back] {
             let Lit(found) = light.to(facing);
             let [r, g, b] = lit(colour, [intensity(normal, &frame.n, facing); 3])
                 .channels()
                 .map(u32::from);
-            let rounded = [(found[0], 9), (found[1], 8), (found[2], 9)]
+            let rounded = [(found[0], 11), (found[1], 10), (found[2], 11)]
                 .map(|(x, cut)| (u32::from(x) + (1 << (cut - 1))) >> cut);
             assert_eq!(rounded, [r, g, b]);
         }
@@ -112,7 +136,7 @@ fn cut_edges_have_light_in_between() {
         let [a, b, c] = [0; 3].map(|_| {
             let normal = any_vector(&mut random);
             CameraVertex {
-                light: Light::new(any_colour(&mut random), normal, &frame.n, |i| [i; 3]),
+                light: Light::new(any_channels(&mut random), normal, &frame.n, |i| [i; 3]),
                 ..random_vertex(&mut random, &frame)
             }
         });

@@ -49,6 +49,7 @@ fn the_order_in_the_mesh_does_not_matter() {
                 position: [0; 3].map(|_| random.integer(-30_000, 30_000) as i16),
                 normal: random.direction().map(|x| (x * 16_384.0) as i16),
                 colour: Rgb565(random.bits() as u16),
+                fine: random.bits() as u8,
             })
             .collect();
         let triangles: Vec<_> = (0..20)

@@ -2,18 +2,18 @@
 
 use crate::error::{FormatError, Location};
 use crate::polygons::{Content, Corner, MAX_TEXTURES, Polygons, Rgb8, Texture};
-use glint_core::mesh::{Attribute, Mesh, MeshHeader, Rgb565, checksum, stated_checksum};
+use glint_core::mesh::{Attribute, Mesh, MeshHeader, checksum, stated_checksum};
 use glint_core::records::TextureCoordinates;
 
-/// Parses a GLM. Positions, normals and texture coordinates are converted exactly, colours by bit
-/// replication. The chunks of the mesh are merged. Textures remain in the board's memory layout.
+/// Parses a GLM. Positions, normals, texture coordinates and colours of vertices are converted
+/// exactly, colours of triangles by bit replication. The chunks of the mesh are merged. Textures
+/// remain in the board's memory layout.
 ///
 /// # Errors
 /// As for [`check_file`], or the mesh has no triangles.
 pub fn parse(bytes: &[u8]) -> Result<Polygons, FormatError> {
     let mesh = check_file(bytes)?;
     let world = |q: [i16; 3]| q.map(|c| f64::from(c) / 16384.0);
-    let rgb8 = |colour: Rgb565| Rgb8(colour.to_rgb888());
     let mut polygons = Polygons::default();
     // The normals may be averages of face normals.
     polygons.is_smooth = Some(false);
@@ -37,7 +37,7 @@ pub fn parse(bytes: &[u8]) -> Result<Polygons, FormatError> {
         for vertex in chunk.vertices() {
             polygons.add_point(world(vertex.position), Location::Whole)?;
             polygons.add_normal(world(vertex.normal), Location::Whole)?;
-            polygons.point_colours.push(rgb8(vertex.colour));
+            polygons.point_colours.push(Rgb8(vertex.rgb888()));
         }
         for triangle in chunk.triangles() {
             let corner = |index| {
@@ -50,7 +50,7 @@ pub fn parse(bytes: &[u8]) -> Result<Polygons, FormatError> {
             };
             polygons.add_face(
                 &triangle.indices.map(corner),
-                Some(rgb8(triangle.colour)),
+                Some(Rgb8(triangle.colour.to_rgb888())),
                 Location::Whole,
             )?;
             if let Some(face) = polygons.faces.last_mut() {

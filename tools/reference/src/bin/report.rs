@@ -400,6 +400,7 @@ fn measure_raymarch(
 fn measure_gouraud(quick: bool, earlier: bool, to: &Folder) -> Result<()> {
     to.write("gouraud", &gouraud::scenes::measure())?;
     to.write_with_commit("gouraud-forms", &gouraud::forms::measure())?;
+    to.write_with_commit("gouraud-colours", &gouraud::colours::measure())?;
     to.write_with_commit("gouraud-clocks", &gouraud::clocks::measure()?)?;
     if quick {
         return Ok(());

@@ -244,8 +244,8 @@ impl Placed<'_> {
             return;
         }
         let shade = |normal, colour| self.shade(normal, colour, is_front);
-        let flat = shade(triangle.normal, triangle.colour);
-        let smooth = vertices.map(|vertex| shade(vertex.normal, vertex.colour));
+        let flat = shade(triangle.normal, full(triangle.colour));
+        let smooth = vertices.map(|vertex| shade(vertex.normal, vertex.rgb888().map(f64::from)));
         let farthest = match subject.clip {
             Clip::Guard => f64::INFINITY,
             Clip::View { far } => far.to_num(),
@@ -291,13 +291,13 @@ impl Placed<'_> {
     }
 
     /// Returns a colour of the mesh, multiplied by the light on the front or back face.
-    fn shade(&self, normal: [i16; 3], colour: Rgb565, is_front: bool) -> Vector {
+    fn shade(&self, normal: [i16; 3], colour: Vector, is_front: bool) -> Vector {
         let normal = self.normal(normal);
         let normal = match is_front {
             true => normal,
             false => normal.map(|part| -part),
         };
-        product(full(self.colour.unwrap_or(colour)), self.light.on(normal))
+        product(self.colour.map_or(colour, full), self.light.on(normal))
     }
 
     /// Returns a normal of the mesh in world coordinates: it is multiplied by the inverse transpose of the matrix, and scaled to its

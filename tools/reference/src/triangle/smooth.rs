@@ -32,13 +32,19 @@ pub struct Interpolated {
 impl Interpolated {
     /// Makes the triangle of three snapped vertices, with the light `lit[i]` at `vertices[i]`.
     pub fn new(vertices: &[ScreenVertex; 3], lit: &[Lit; 3]) -> Self {
+        let steps = |Lit(channels): Lit| {
+            let [r, g, b] = channels.map(|x| f64::from(x) / 65536.0);
+            [r * RANGES[0], g * RANGES[1], b * RANGES[2]]
+        };
+        Self::of(vertices, lit.map(steps))
+    }
+
+    /// Makes the triangle of three snapped vertices, with the light `light[i]`, in steps, at `vertices[i]`.
+    pub fn of(vertices: &[ScreenVertex; 3], light: [[f64; 3]; 3]) -> Self {
         Self {
             places: vertices.map(|v| [v.x, v.y].map(|x| f64::from(x) / 256.0)),
             w: vertices.map(|v| f64::from(v.w) / 64.0),
-            light: lit.map(|Lit(channels)| {
-                let [r, g, b] = channels.map(|x| f64::from(x) / 16384.0);
-                [r * RANGES[0], g * RANGES[1], b * RANGES[2]]
-            }),
+            light,
         }
     }
 

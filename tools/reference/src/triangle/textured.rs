@@ -265,6 +265,7 @@ pub fn globe(texture: Vec<u8>, bands: u32) -> Vec<u8> {
                 position: normal,
                 normal,
                 colour: Rgb565::WHITE,
+                fine: 0,
             };
             let [s, t] = [s, t].map(|c| (c * 65_536.0) as i32);
             (vertex, TextureCoordinates { s, t }.to_bytes())

@@ -51,9 +51,9 @@ fn random_triangles_smooth() {
 fn extreme_light() {
     let (near, far) = (((1 << 18) - 4) * 64, 228 * 64);
     let mut bench = Bench::new(Shading::Smooth, 7, [0.0, 0.3]);
-    let white = Lit::new(Rgb565::WHITE, [256; 3]);
+    let white = Lit::new(Rgb565::WHITE.fractions(), [256; 3]);
     let dark = Lit::default();
-    let any = Lit::new(Rgb565(0x5AA5), [77; 3]);
+    let any = Lit::new(Rgb565(0x5AA5).fractions(), [77; 3]);
     for depths in [[near, far, far], [far, near, far], [far; 3], [near; 3]] {
         for lit in [
             [white, dark, dark],

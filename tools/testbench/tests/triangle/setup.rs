@@ -59,10 +59,7 @@ impl Types {
         let back = light.back != Lit::default();
         let Lit([r, g, b]) = if back { light.back } else { light.front };
         let record = self.light.record().with("back", back);
-        record
-            .with("red", r / 2)
-            .with("green", g)
-            .with("blue", b / 2)
+        record.with("red", r).with("green", g).with("blue", b)
     }
 
     /// Packs a triangle for the input stream.
@@ -252,9 +249,9 @@ fn triangle(random: &mut Pcg64Mcg, (width, height): (u32, u32)) -> Input {
 
 /// Makes random light of a vertex, on its front or its back side.
 fn light(random: &mut Pcg64Mcg) -> Light {
-    let colour = [0, u16::MAX, random.random()][random.random_range(0..3)];
+    let colour = [[0; 3], [255; 3], random.random()][random.random_range(0..3)];
     let intensity = [0, 1, 256, random.random_range(0..=256)][random.random_range(0..4)];
-    let lit = Lit::new(Rgb565(colour), [intensity; 3]);
+    let lit = Lit::new(Rgb565::with_fractions(colour), [intensity; 3]);
     let dark = Lit::default();
     let [front, back] = [[lit, dark], [dark, lit]][random.random_range(0..2)];
     Light { front, back }
@@ -345,8 +342,8 @@ fn input(places: [[i32; 2]; 3], w: [u32; 3]) -> Input {
         colour: 0xFFFF,
         normal: [0, 0, -1 << 14],
         light: [[0, 256], [256, 0], [200, 0]].map(|[front, back]| Light {
-            front: Lit::new(Rgb565::WHITE, [front; 3]),
-            back: Lit::new(Rgb565::WHITE, [back; 3]),
+            front: Lit::new(Rgb565::WHITE.fractions(), [front; 3]),
+            back: Lit::new(Rgb565::WHITE.fractions(), [back; 3]),
         }),
     }
 }

@@ -35,18 +35,20 @@ fn soup(random: &mut Pcg64Mcg, triangles: &[[[f64; 3]; 3]]) -> Vec<u8> {
     let vertices: Vec<Vertex> = triangles
         .as_flattened()
         .iter()
-        .map(|position| Vertex {
-            position: position.map(quantised),
-            normal: [
-                random.random_range(-0.7..0.7),
-                random.random_range(-1.0..0.3),
-                random.random_range(-0.7..0.7),
-            ]
-            .map(quantised),
+        .map(|position| {
+            let vertex = Vertex {
+                position: position.map(quantised),
+                normal: [
+                    random.random_range(-0.7..0.7),
+                    random.random_range(-1.0..0.3),
+                    random.random_range(-0.7..0.7),
+                ]
+                .map(quantised),
+                ..Vertex::default()
+            };
             // Half of the colours are white or black, because light changes most steeply between them.
-            colour: Rgb565(
-                [0, 0xFFFF, random.random(), random.random()][random.random_range(0..4)],
-            ),
+            let colours = [[0; 3], [255; 3], random.random(), random.random()];
+            vertex.with_rgb888(colours[random.random_range(0..4)])
         })
         .collect();
     let triangles: Vec<IndexedTriangle> = (0..triangles.len() as u32)
@@ -85,9 +87,9 @@ fn screen(random: &mut Pcg64Mcg, thin: bool) -> Vec<([ScreenVertex; 3], [Lit; 3]
                 },
             });
             let lit = [0; 3].map(|_| {
-                let colour = [0, 0xFFFF, random.random()][random.random_range(0..3)];
+                let colour = [[0; 3], [255; 3], random.random()][random.random_range(0..3)];
                 Lit::new(
-                    Rgb565(colour),
+                    Rgb565::with_fractions(colour),
                     [[256, random.random_range(0..=256)][i % 2]; 3],
                 )
             });
@@ -100,7 +102,7 @@ fn screen(random: &mut Pcg64Mcg, thin: bool) -> Vec<([ScreenVertex; 3], [Lit; 3]
 fn largest_ratio() -> Vec<([ScreenVertex; 3], [Lit; 3])> {
     let places = [[20, 10], [300, 20], [150, 170]];
     let (near, far) = (LARGEST, FARTHEST as u32 * 64);
-    let white = Lit::new(Rgb565::WHITE, [256; 3]);
+    let white = Lit::new(Rgb565::WHITE.fractions(), [256; 3]);
     let black = Lit::default();
     [
         [(near, black), (far, white), (far, black)],

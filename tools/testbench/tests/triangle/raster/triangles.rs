@@ -85,9 +85,9 @@ impl Random {
     }
 
     pub fn lit(&mut self) -> Lit {
-        let colour = [0, u16::MAX, self.0.random()][self.within(0, 2) as usize];
+        let colour = [[0; 3], [255; 3], self.0.random()][self.within(0, 2) as usize];
         Lit::new(
-            Rgb565(colour),
+            Rgb565::with_fractions(colour),
             [[256, self.within(0, 256) as u32][self.within(0, 1) as usize]; 3],
         )
     }
