@@ -112,7 +112,7 @@ pub fn measure() -> Vec<Row> {
     rows
 }
 
-/// Makes a random triangle in the picture, in front of the farther half of the depths, and colours of its vertices.
+/// Makes a random triangle in the picture, on the nearer half of the depths, and colours of its vertices.
 fn triangle(random: &mut Pcg64Mcg, reach: u8) -> ([ScreenVertex; 3], [[u8; 3]; 3]) {
     let vertices = [(); 3].map(|()| ScreenVertex {
         x: random.random_range(0..320 << 8),
