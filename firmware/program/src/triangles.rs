@@ -342,6 +342,7 @@ impl<const N: usize> New<'_, N> {
                 ],
                 normal: NORMAL,
                 colour: triangle.colours[corner],
+                fine: 0,
             };
             if let Some(place) = chunk.get_mut(1 + first + number) {
                 *place = word(vertex.to_bytes());
