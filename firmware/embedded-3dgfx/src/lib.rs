@@ -59,7 +59,9 @@ pub fn convert<const MAX: usize, const N: usize>(
     list: &mut Triangles<N>,
     size: Size,
 ) -> Outcome {
-    let largest = primitives(commands).filter_map(depths).flatten().max();
+    let depths_of_all = primitives(commands).filter_map(depths).flatten();
+    // Saturated depths stay the farthest after the shift.
+    let largest = depths_of_all.filter(|&depth| depth != u32::MAX).max();
     // The smallest shift after which every depth has 16 bits.
     let shift = (u32::BITS - largest.unwrap_or(0).leading_zeros()).saturating_sub(16);
     let mut outcome = Outcome::default();
@@ -69,8 +71,8 @@ pub fn convert<const MAX: usize, const N: usize>(
         let depths = match depths(primitive) {
             Some(depths) => {
                 has_depth = true;
-                // Between those of the primitives without depth. The shift leaves 16 bits.
-                depths.map(|depth| ((depth >> shift) as u16).clamp(1, FARTHEST - 1))
+                // Between those of the primitives without depth, so 16 bits suffice.
+                depths.map(|depth| (depth >> shift).clamp(1, (FARTHEST - 1).into()) as u16)
             }
             None if has_depth => [0; 3],
             None => [FARTHEST; 3],
@@ -112,7 +114,7 @@ pub fn convert<const MAX: usize, const N: usize>(
 pub struct Outcome {
     /// Number of triangles that exceed the capacity of the list.
     pub beyond: usize,
-    /// Number of primitives with a texture or a light map.
+    /// Number of primitives of other kinds: those with a texture or a light map.
     pub unknown: usize,
 }
 
@@ -138,7 +140,7 @@ enum Shape<'p> {
     Unknown,
 }
 
-/// Divides a primitive in its geometry, and its colours and opacity, which [`colours`] returns.
+/// The geometry of a primitive; [`colours`] and [`blend`] return the rest.
 fn shape(primitive: &DrawPrimitive) -> Shape<'_> {
     use DrawPrimitive as P;
     match primitive {

@@ -6,8 +6,9 @@ use embedded_graphics::pixelcolor::{Rgb565, RgbColor};
 use glint_embedded_3dgfx::Outcome;
 use glint_program::core::light::Background;
 use glint_program::core::picture::{Samples, Size};
+use glint_program::core::texture::Blend;
 use glint_program::host::Host;
-use glint_program::triangles::Triangles;
+use glint_program::triangles::{Triangle, Triangles};
 use glint_program::{Board, Picture, PictureError, Program};
 use std::cell::RefCell;
 
@@ -83,6 +84,81 @@ fn depths_of_a_fraction_and_of_thousands_differ() {
             with_depth(far, Rgb565::GREEN),
         ]);
         assert_eq!(at(30, 30), 0xf800, "{near} before {far}");
+    }
+}
+
+#[test]
+fn an_infinite_depth_is_farthest_and_leaves_the_others_apart() {
+    let behind = with_depth(f32::INFINITY, Rgb565::BLUE);
+    let at = drawn([
+        with_depth(0.25, Rgb565::RED),
+        with_depth(0.5, Rgb565::GREEN),
+        behind,
+    ]);
+    assert_eq!(at(30, 30), 0xf800);
+}
+
+#[test]
+fn a_list_is_used_again_for_fewer_and_other_triangles() {
+    let mut list = Triangles::<3>::new();
+    let triangle = |blend| Triangle {
+        corners: [[40, 40], [360, 40], [40, 360]],
+        depths: [0; 3],
+        colours: [glint_program::core::colour::Rgb565::WHITE; 3],
+        blend,
+    };
+    let [opaque, half] = [Blend::Opaque, Blend::ALL[4]].map(triangle);
+    // Textures behind the first chunk, then a second chunk in their place.
+    for triangles in [
+        vec![half; 20],
+        vec![opaque; 33],
+        vec![half; 1],
+        vec![opaque; 64],
+        vec![],
+    ] {
+        let (count, is_empty) = (triangles.len(), triangles.is_empty());
+        assert_eq!(list.set(SIZE, triangles), 0);
+        LIST.set(Some(list));
+        let mut host = Host::<Listed>::start();
+        host.run(1)
+            .unwrap_or_else(|error| panic!("{count} triangles: {error}"));
+        assert_eq!(
+            host.picture()[30 * 320 + 30] == 0,
+            is_empty,
+            "{count} triangles"
+        );
+        drop(host);
+        list = LIST.take().unwrap();
+    }
+}
+
+thread_local! {
+    /// The list that [`Listed`] shows.
+    static LIST: std::cell::Cell<Option<Triangles<3>>> = const { std::cell::Cell::new(None) };
+}
+
+/// Shows a list, and returns it at the end.
+struct Listed(Option<Triangles<3>>);
+
+impl Program for Listed {
+    fn start(_: &mut Board) -> Self {
+        Self(LIST.take())
+    }
+
+    fn update(&mut self, _: &mut Board) {}
+
+    fn draw<'p>(&'p self, picture: &mut Picture<'p>) -> Result<(), PictureError> {
+        picture.appearance.background = Some(Background::Colour([0; 3]));
+        if let Some(list) = &self.0 {
+            picture.triangles(list)?;
+        }
+        Ok(())
+    }
+}
+
+impl Drop for Listed {
+    fn drop(&mut self) {
+        LIST.set(self.0.take());
     }
 }
 

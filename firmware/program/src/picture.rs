@@ -255,8 +255,8 @@ impl<'p> Picture<'p> {
         self.meshes.last_mut().ok_or(PictureError::Meshes)
     }
 
-    /// Adds a list of triangles in pixels, and sets the picture's size and camera for it; lights and fog return to their defaults, so
-    /// triangles have their own colours. Set further options in the result. The engine draws flat shading; smooth shading is drawn by the
+    /// Adds a list of triangles in pixels, and sets the picture's size and camera for it, so all lists of a picture have the same size;
+    /// lights and fog return to their defaults, so triangles have their own colours. Set further options in the result. The engine draws flat shading; smooth shading is drawn by the
     /// soft core.
     ///
     /// ```
@@ -291,11 +291,12 @@ impl<'p> Picture<'p> {
     /// ```
     ///
     /// # Errors
-    /// [`PictureError::Meshes`] for too many meshes and lists.
+    /// [`PictureError::Meshes`] for too many meshes and lists; [`PictureError::Lacks`].
     pub fn triangles<const N: usize>(
         &mut self,
         list: &'p Triangles<N>,
     ) -> Result<&mut Object<'p>, PictureError> {
+        built(OBJECT)?;
         self.view = list.view()?;
         self.size = list.size();
         self.appearance.lights.clear();

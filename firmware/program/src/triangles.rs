@@ -38,7 +38,8 @@ use crate::Aligned;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Triangle {
     /// Corners, to the right and down from the upper left corner of the picture, in quarters of a pixel: the middle of the pixel (x, y) is
-    /// (4x + 2, 4y + 2). A corner more than 8,191 pixels from the middle of the picture is moved to this distance on each axis.
+    /// (4x + 2, 4y + 2). A corner more than 8,191 pixels from the middle of the picture is moved to this distance on each axis. A triangle
+    /// with a corner more than some 2,000 pixels outside of the picture requires the feature `clipping`.
     pub corners: [[i32; 2]; 3],
     /// Depth of each corner: a pixel of a smaller depth hides others, and of equal depths the later triangle hides the earlier one.
     pub depths: [u16; 3],
@@ -204,8 +205,10 @@ impl<const N: usize> Triangles<N> {
             };
             *header = word(chunk.to_bytes());
             let used = (count - CHUNK * number).min(CHUNK);
-            let unused = records.get_mut(VERTICES + used..VERTICES + CHUNK);
-            unused.unwrap_or_default().fill([0; 4]);
+            // The words may have been those of a texture.
+            for unused in [3 * used..VERTICES, VERTICES + used..VERTICES + CHUNK] {
+                records.get_mut(unused).unwrap_or_default().fill([0; 4]);
+            }
         }
         let mut length = HEADER + CHUNK_WORDS * chunks;
         let mut attributes = 0;
