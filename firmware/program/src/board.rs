@@ -662,6 +662,11 @@ impl Board {
         self.shapes.shape(shape).unwrap_or(self.shapes.cube())
     }
 
+    /// The built-in mesh with this name, if it has been made.
+    pub(crate) fn made(&self, name: &str) -> Option<Mesh<'static>> {
+        self.shapes.made(name)
+    }
+
     /// The built-in mesh with this name.
     pub(crate) fn named(&mut self, name: &str) -> Option<Mesh<'static>> {
         self.shapes.named(name)

@@ -5,9 +5,10 @@ use core::fmt;
 use glint_core::camera::ViewError;
 use glint_core::mesh::Mesh;
 use glint_core::object::MAX_OBJECTS;
+use glint_core::picture::{Backend, Size};
 use glint_core::wireframe::{self, CUBE, ProgramError};
 use glint_model::{Frame, Object};
-use glint_scene::{AnyBoard, Assets, LineError, Name, Scene, SettingError, lines};
+use glint_scene::{Assets, Board as _, LineError, Name, Scene, SettingError, lines};
 use heapless::Vec;
 
 use crate::Board;
@@ -38,7 +39,7 @@ pub enum SceneError<'t> {
     Line(LineError<'t>),
     /// The scene excludes the option of a line, whose number is from 1.
     Setting(usize, SettingError<'t>),
-    /// The program has no mesh with this name, or the scene replaces textures or shows a wireframe program by this name.
+    /// The program has no mesh with this name.
     Missing(Name),
     /// The start scene's camera is invalid.
     View(ViewError),
@@ -90,7 +91,8 @@ impl core::error::Error for SceneError<'_> {}
 /// # Ok::<(), glint_program::host::HostError>(())
 /// ```
 pub struct ShownScene {
-    /// The options of the scene, such as its camera. The program may change them before each picture, except the names of meshes.
+    /// The options of the scene, such as its camera. The program may change them before each picture, except those that determine which meshes
+    /// are shown.
     pub scene: Scene,
     mesh: Option<Mesh<'static>>,
     objects: Vec<Mesh<'static>, MAX_OBJECTS>,
@@ -98,8 +100,9 @@ pub struct ShownScene {
 }
 
 impl ShownScene {
-    /// The scene that results from the commands of `text`, one per line, on the board's start scene. Motions are left out, because the
-    /// program moves the scene. `meshes` are meshes of the program by their names; they have priority over built-in meshes.
+    /// The scene that results from the commands of `text`, one per line, on the board's start scene. `meshes` are meshes of the program by
+    /// their names; they have priority over built-in meshes. Motions are left out, because the program moves the scene. Textures by name and
+    /// wireframe programs by name are errors.
     ///
     /// ```
     /// # use glint_program::{Board, Picture, PictureError, Program, host::Host};
@@ -125,17 +128,14 @@ impl ShownScene {
         meshes: &[(&str, Mesh<'static>)],
     ) -> Result<Self, SceneError<'t>> {
         let mut scene = Scene::new(board.defaults()).map_err(SceneError::View)?;
+        let mut content = Content { board, meshes };
         for line in lines(text) {
             let (number, line) = line.map_err(SceneError::Line)?;
-            let applied = line.apply(&mut scene, &mut AnyBoard);
+            let applied = line.apply(&mut scene, &mut content);
             applied.map_err(|error| SceneError::Setting(number, error))?;
         }
-        if let Some(name) = scene.texture.take().or(scene.program.take()) {
-            return Err(SceneError::Missing(name));
-        }
         let mut find = |name: &str| {
-            let own = meshes.iter().find(|(own, _)| *own == name);
-            let found = own.map(|(_, mesh)| *mesh).or_else(|| board.named(name));
+            let found = content.has_mesh(name).then(|| content.find(name)).flatten();
             // The name of a scene's mesh is not longer than a name.
             found.ok_or_else(|| SceneError::Missing(Name::try_from(name).unwrap_or_default()))
         };
@@ -172,5 +172,45 @@ impl ShownScene {
             replacement_texture: None,
             program: self.program,
         })
+    }
+}
+
+/// The board and the meshes of a program, as a scene sees them.
+struct Content<'c> {
+    board: &'c mut Board,
+    meshes: &'c [(&'c str, Mesh<'static>)],
+}
+
+impl Content<'_> {
+    /// The mesh with this name: one of the program, or a built-in one that has been made.
+    fn find(&self, name: &str) -> Option<Mesh<'static>> {
+        let own = self.meshes.iter().find(|(own, _)| *own == name);
+        own.map(|(_, mesh)| *mesh).or_else(|| self.board.made(name))
+    }
+}
+
+impl glint_scene::Board for Content<'_> {
+    fn has_size(&self, size: Size) -> bool {
+        size.width() <= self.board.largest_size().width()
+    }
+
+    fn has_engine(&self) -> bool {
+        self.board.defaults().backend == Backend::Gateware
+    }
+
+    fn has_mesh(&mut self, name: &str) -> bool {
+        self.find(name).or_else(|| self.board.named(name)).is_some()
+    }
+
+    fn mesh(&self, name: &str) -> Option<Mesh<'_>> {
+        self.find(name)
+    }
+
+    fn has_texture(&self, _: &str) -> bool {
+        false
+    }
+
+    fn has_program(&self, _: &str) -> bool {
+        false
     }
 }
