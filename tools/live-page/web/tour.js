@@ -1,12 +1,20 @@
 // The tour: short explanations of the parts of the page, one after another, some with a scene or a field on the board.
 const STOPS = [
-  { part: "#screen", text: "The board's monitor. Drag on the picture, or use the arrow keys, to move the camera; the wheel moves it nearer or farther." },
-  { part: "#scenes", show: ["scenes", "objects"], text: "A scene sets subject, camera and light at once. This one has several meshes, each at its own place and in its own colour." },
-  { part: "#fields", show: ["scenes", "menger"], text: "A distance field is a solid given by a formula. A circuit of the chip finds its surface for each pixel." },
-  { part: "#programs", text: "Programs take the board for themselves: games and instruments. One click starts the firmware again." },
+  { part: "#screen",
+    text: "The board's monitor. Drag on the picture, or use the arrow keys, to move the camera; the wheel moves it " +
+      "nearer or farther." },
+  { part: "#scenes", show: ["scenes", "objects"],
+    text: "A scene sets subject, camera and light at once. The scene objects has several meshes, each at its own place " +
+      "and in its own colour." },
+  { part: "#fields", show: ["scenes", "menger"],
+    text: "A distance field is a solid given by a formula, as in the scene menger. A circuit of the chip finds its " +
+      "surface for each pixel." },
+  { part: "#programs", text: "Programs take the board for themselves: games and instruments. A button here returns to the firmware." },
   { part: "#model", text: "Your own model, with its textures, or your own program: choose it, or drop it anywhere on the page." },
   { part: "#command", text: "The board's console. Each click above types commands here; help lists them, and Tab completes them." },
-  { part: "#motion", text: "Turn the motion sensor by dragging: the command imu look lets it steer the camera. A hand in front of the camera turns the scene holoforge." },
+  { part: "#motion",
+    text: "Turn the motion sensor by dragging: the command imu look lets it steer the camera. A hand in front of the " +
+      "camera turns the scene holoforge." },
   { part: "#curves", text: "The last minute: time of a frame, cycles of the engine, and the attitude of the sensor." },
 ];
 
@@ -32,6 +40,8 @@ export function startTour(show) {
     element("tour-place").textContent = `${number + 1} of ${stops.length}`;
     element("tour-back").disabled = number === 0;
     element("tour-next").textContent = number + 1 === stops.length ? "End" : "Next";
+    // A disabled button has no focus, and the keys of the dialog need one.
+    if (number === 0) element("tour-next").focus();
     if (shown) show(...shown);
   }
 
@@ -40,7 +50,6 @@ export function startTour(show) {
     stops = STOPS.filter(({ part }) => document.querySelector(part).checkVisibility());
     dialog.show();
     visit(0);
-    element("tour-next").focus();
   });
   element("tour-back").addEventListener("click", () => visit(current - 1));
   element("tour-next").addEventListener("click", () => (current + 1 < stops.length ? visit(current + 1) : dialog.close()));
