@@ -11,6 +11,7 @@ use glint::board::{self, AnyBoard, BoardName};
 use glint::console::BIOS_PROMPT;
 use glint::error::quote;
 use glint::formats::read_up_to;
+use glint::program;
 use glint::web::{Server, Watched};
 use glint_board_api::pace::SystemClock;
 use glint_core::console::PROMPT;
@@ -31,7 +32,7 @@ const PROMPTS: [&[u8]; 2] = [PROMPT.as_bytes(), BIOS_PROMPT];
 
 /// Run a board until Ctrl-C, for programs or in a web page: print its serial port or the page's address.
 ///
-/// With --firmware, a board on a serial port is loaded by its BIOS, and its console opens.
+/// With `--board PORT --firmware FILE`, the BIOS of a board on a serial port loads the program; its console opens, or with --web the page.
 ///
 /// Without --web, any program that uses serial ports can open the port, one program at a time: `glint … --board PORT`,
 /// litex_term, a script. Several boards run side by side. On a terminal without --pty and --ready-file, the board's console opens
@@ -56,7 +57,7 @@ pub struct BoardArguments {
     /// switches, LEDs and digits; port 0 selects a free port. The printed address opens the page [default: 127.0.0.1:0].
     #[arg(long, value_name = "ADDR", num_args = 0..=1, default_missing_value = "127.0.0.1:0", conflicts_with_all = ["pty", "bios", "flash"])]
     web: Option<SocketAddr>,
-    /// With --web, start the firmware again whenever its file changes, such as after `cargo build`.
+    /// With --web, start or load the firmware again whenever its file changes, such as after `cargo build`.
     #[arg(long, requires = "web", requires = "firmware")]
     watch: bool,
     /// Serve GDB at this address: `target remote ADDR` in gdb-multiarch stops the board, for breakpoints, steps, registers and memory.
@@ -94,6 +95,10 @@ impl BoardArguments {
     /// Serves the live page.
     fn serve(&self, address: SocketAddr) -> anyhow::Result<()> {
         let ready = self.ready()?;
+        if let (BoardName::Serial(_), Some(path)) = (&self.board, &self.line.firmware) {
+            // The page loads it; a file that is no program is an error here.
+            program::read(path)?;
+        }
         let watched = self.line.firmware.clone();
         let watched = watched.and_then(|path| match self.board {
             BoardName::Serial(_) => Some(Watched::to_load(path, self.watch)),
@@ -217,7 +222,7 @@ impl BoardArguments {
                 board: self.line.open(&port)?,
                 // The watcher of the port prints them.
                 places: Places::default(),
-                said: Vec::new(),
+                said: None,
             };
             return talk(&mut opened, is_ended);
         }

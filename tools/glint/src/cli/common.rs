@@ -132,7 +132,8 @@ impl LineArguments {
         let mut board = self.open(port)?;
         let (said, places) = match program {
             Some(Program { image, places }) => {
-                (Loading::SILENT.load(&mut board, &image)?.said, places)
+                let report = Loading::USUAL.load(&mut board, &image)?;
+                (Some(report.said), places)
             }
             None => Default::default(),
         };
@@ -161,7 +162,7 @@ impl LineArguments {
         Ok(Unsynchronised {
             board: Box::new(board),
             places,
-            said: Vec::new(),
+            said: None,
         })
     }
 
@@ -217,8 +218,8 @@ pub struct Unsynchronised<B> {
     pub board: B,
     /// The source locations of the program of `--firmware`.
     pub places: Places,
-    /// The output of the BIOS and the program so far.
-    pub said: Vec<u8>,
+    /// The output of the BIOS and the program so far; `None` if no program was loaded.
+    pub said: Option<Vec<u8>>,
 }
 
 /// A board whose firmware waits for a command.

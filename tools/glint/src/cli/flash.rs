@@ -130,7 +130,7 @@ impl FlashArguments {
         let loading = Loading {
             address: self.address,
             wait_ms: self.wait * 1000,
-            has_output: !self.no_output,
+            awaits_text: !self.no_output,
         };
         let report = loading.load(&mut *board, &program)?;
         if self.json {

@@ -16,16 +16,16 @@ pub struct Loading {
     pub address: u32,
     /// Longest wait for the BIOS's request, in milliseconds of the board's time.
     pub wait_ms: u64,
-    /// Whether the program prints text when it starts.
-    pub has_output: bool,
+    /// Whether a program that prints no text is an error.
+    pub awaits_text: bool,
 }
 
 impl Loading {
-    /// Usual loading of a program that need not print text.
-    pub const SILENT: Self = Self {
+    /// Loading to the start of main memory, of a program that need not print text.
+    pub const USUAL: Self = Self {
         address: START_ADDRESS,
         wait_ms: 1000 * WAIT_SECONDS,
-        has_output: false,
+        awaits_text: false,
     };
 
     /// Loads and starts a program, with progress.
@@ -46,7 +46,7 @@ impl Loading {
             },
         )?;
         bar.finish();
-        if self.has_output {
+        if self.awaits_text {
             let starting = spinner("waiting for the program's text");
             flash::await_text(board, &report.said, START_MS)?;
             starting.finish();

@@ -74,7 +74,7 @@ impl ConsoleArguments {
                 anyhow::ensure!(!self.json, "--json: expected commands, found a terminal");
                 let mut opened = self.line.unsynchronised_board(&board)?;
                 let mut heard = self.heard(&mut *opened.board, log);
-                return interact(&mut heard, opened.places, &opened.said, || false);
+                return interact(&mut heard, opened.places, opened.said.as_deref(), || false);
             }
             _ => Box::new(commands(std::io::stdin().lock())),
         };
@@ -284,7 +284,7 @@ pub fn talk(
         end_ms: None,
     };
     let places = std::mem::take(&mut opened.places);
-    interact(&mut heard, places, &opened.said, is_ended)
+    interact(&mut heard, places, opened.said.as_deref(), is_ended)
 }
 
 /// Prints the output of a board, and the source location when its program ends with a message, until the connection fails or a signal ends
@@ -293,8 +293,9 @@ pub fn print_output(opened: Unsynchronised<SerialBoard>) -> anyhow::Result<()> {
     let Unsynchronised {
         mut board,
         mut places,
-        said: mut received,
+        said,
     } = opened;
+    let mut received = said.unwrap_or_default();
     let mut output = std::io::stdout();
     loop {
         output.write_all(&received)?;
@@ -305,12 +306,11 @@ pub fn print_output(opened: Unsynchronised<SerialBoard>) -> anyhow::Result<()> {
     }
 }
 
-/// Passes the output that the board sent before the session to the terminal, without searching it for the text of `--until`. `said` is the
-/// part that has been read.
-fn print_earlier(board: &mut Heard, said: &[u8]) -> anyhow::Result<()> {
+/// Passes the output that the board sent before the session to the terminal, without searching it for the text of `--until`.
+fn print_earlier(board: &mut Heard) -> anyhow::Result<()> {
     let until = board.until.take();
     let end_ms = board.now_ms() + EARLIER_MS;
-    let mut earlier = said.to_vec();
+    let mut earlier = Vec::new();
     while board.now_ms() < end_ms {
         let before = earlier.len();
         board.read(&mut earlier, POLL_MS)?;
@@ -329,7 +329,7 @@ fn print_earlier(board: &mut Heard, said: &[u8]) -> anyhow::Result<()> {
 fn interact(
     board: &mut Heard,
     mut places: Places,
-    said: &[u8],
+    said: Option<&[u8]>,
     mut is_ended: impl FnMut() -> bool,
 ) -> anyhow::Result<()> {
     eprintln!("Ctrl-] ends the console.");
@@ -337,17 +337,22 @@ fn interact(
     let keys = keys();
     let mut output = std::io::stdout();
     let mut received = Vec::new();
-    print_earlier(board, said)?;
-    // A program that has just been loaded is in no boot and no transfer.
-    if said.is_empty() {
-        let mut console = Console::new(board);
-        console.end_boot()?;
-        console.reset_transfer()?;
-        // An empty line makes the board print its prompt.
-        board.write(b"\r")?;
+    match said {
+        Some(said) => {
+            board.hear(said)?;
+            received.extend(said);
+        }
+        // An earlier program may have left the board in a boot or a transfer.
+        None => {
+            print_earlier(board)?;
+            let mut console = Console::new(board);
+            console.end_boot()?;
+            console.reset_transfer()?;
+            // An empty line makes the board print its prompt.
+            board.write(b"\r")?;
+        }
     }
     while !is_ended() {
-        board.read(&mut received, POLL_MS)?;
         output.write_all(&received)?;
         if let Some(place) = places.hear(&received) {
             // In raw mode a line feed does not return to the start of the line.
@@ -355,6 +360,7 @@ fn interact(
         }
         output.flush()?;
         received.clear();
+        board.read(&mut received, POLL_MS)?;
         if board.is_over()? {
             return Ok(());
         }
