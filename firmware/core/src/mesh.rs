@@ -143,9 +143,9 @@ impl<'a> Mesh<'a> {
         })
     }
 
-    /// A mesh of constant bytes without optional attributes, for which a test must state that [`new_checked`](Self::new_checked) returns the
-    /// same; this function checks only lengths. A program with such a mesh needs no check when it starts. `None` for bytes that are not a
-    /// whole number of records after a header.
+    /// A mesh of constant bytes without optional attributes. Only lengths are checked, so a test must compare it with the result of
+    /// [`new_checked`](Self::new_checked); a program then needs no check when it starts. `None` for bytes that are not a whole number of
+    /// records after a header.
     pub const fn from_constant(bytes: &'static [u8]) -> Option<Self> {
         let Some((header, records)) = bytes.split_first_chunk() else {
             return None;

@@ -1,6 +1,6 @@
-//! Three scenes of the crate `embedded-3dgfx`, whose recorded commands the triangle engine draws. Button 3 shows the next scene, and button 0
-//! stops the time. Switch 0 selects the crate's own rasteriser on the soft core, which draws 320×180 pixels, and switch 1 this size for the
-//! engine too. Each second the console shows the clock cycles of the parts of a picture.
+//! Three scenes of the crate `embedded-3dgfx`, whose recorded commands the triangle engine draws. Button 3 shows the next scene, and button
+//! 0 stops the time. Switch 0 selects the crate's own rasteriser on the soft core, which draws 320×180 pixels, and switch 1 this size for
+//! the engine too. Each second the console shows the clock cycles of the parts of a picture.
 #![cfg_attr(target_arch = "riscv32", no_std, no_main)]
 #![deny(unsafe_code)]
 

@@ -6,14 +6,14 @@
 //! | primitive | drawn as |
 //! |---|---|
 //! | triangles with depth | triangles; a larger depth is farther |
-//! | triangles without depth, lines, points | behind all depths, until the first primitive with depth is recorded; after it, before all depths |
+//! | triangles without depth, lines, points | behind all depths before the first primitive with depth is recorded, in front of them after it |
 //! | translucent and screen-door triangles | triangles that are blended, by the nearest eighth of their opacity |
 //! | Gouraud triangles | triangles with the mean colour, or shaded smoothly by the soft core |
 //! | lines, points | squares of one pixel, moved along the line |
 //! | triangles with a texture or a light map | not drawn, but counted in the [`Outcome`] |
 //!
-//! A pixel belongs to a triangle if its middle does, and to one of two triangles with a common edge. The rasteriser of `embedded-3dgfx` also
-//! draws the pixels on the right and lower edges. Fog, dithering, tints and the sky of a `K3dengine` are parts of its rasteriser; a
+//! A pixel belongs to a triangle if its middle does, and to one of two triangles with a common edge. The rasteriser of `embedded-3dgfx`
+//! also draws the pixels on the right and lower edges. Fog, dithering, tints and the sky of a `K3dengine` are parts of its rasteriser; a
 //! picture has its own background and samples.
 #![no_std]
 #![forbid(unsafe_code)]

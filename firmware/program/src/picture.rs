@@ -401,7 +401,7 @@ impl<'p> Picture<'p> {
         }))
     }
 
-    /// Shows a scene. Its camera, size, samples, lights, background and renderer replace those of the picture; rectangles are in front of it.
+    /// Shows a scene. Its camera, size, samples, lights, background and renderer replace those of the picture; rectangles are in front.
     ///
     /// ```
     /// # use glint_program::{Board, Program, host::Host};

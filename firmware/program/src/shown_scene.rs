@@ -91,8 +91,8 @@ impl core::error::Error for SceneError<'_> {}
 /// # Ok::<(), glint_program::host::HostError>(())
 /// ```
 pub struct ShownScene {
-    /// The options of the scene, such as its camera. The program may change them before each picture, except those that determine which meshes
-    /// are shown.
+    /// The options of the scene, such as its camera. The program may change them before each picture, except those that determine which
+    /// meshes are shown.
     pub scene: Scene,
     mesh: Option<Mesh<'static>>,
     objects: Vec<Mesh<'static>, MAX_OBJECTS>,
@@ -101,8 +101,8 @@ pub struct ShownScene {
 
 impl ShownScene {
     /// The scene that results from the commands of `text`, one per line, on the board's start scene. `meshes` are meshes of the program by
-    /// their names; they have priority over built-in meshes. Motions are left out, because the program moves the scene. Textures by name and
-    /// wireframe programs by name are errors.
+    /// their names; they have priority over built-in meshes. Motions are left out, because the program moves the scene. Names of textures
+    /// and wireframe programs are errors.
     ///
     /// ```
     /// # use glint_program::{Board, Picture, PictureError, Program, host::Host};

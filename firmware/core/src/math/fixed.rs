@@ -85,8 +85,7 @@ impl core::ops::Neg for Turns {
     }
 }
 
-/// A number in a message: prints what the number's own `Display` prints without width and precision, by a sixth of its code. A small program
-/// contains no other formatter of such numbers.
+/// A number in a message: prints what the number's own `Display` prints without width and precision, whose code is several times as large.
 #[derive(Clone, Copy, Debug)]
 pub struct Decimal<T>(pub T);
 

@@ -49,8 +49,8 @@ impl Watched {
         }
     }
 
-    /// Polls the file, in an endless loop if it is watched. After a change, and when two polls in a row have found the same stamp, starts the new program on
-    /// the board, or sends the pages the reason why the file is not a program.
+    /// Polls the file, in an endless loop if it is watched. After a change, and when two polls in a row have found the same stamp, starts
+    /// the new program on the board, or sends the pages the reason why the file is not a program.
     pub(super) fn watch(mut self, channels: &Channels) {
         let mut last = self.known;
         loop {
