@@ -9,6 +9,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 import figures
 import plots
+import state
 import tables
 
 TEMPLATES = Path(__file__).parent / "templates"
@@ -60,6 +61,7 @@ def environment(folder):
     pages.globals.update(
         read=read, made=made, figures=figures, groups=tables.groups, concat=pd.concat,
         constants=dict(read("constants").set_index("name").value),
+        states=state.states, sources=state.SOURCES, without_commit=state.WITHOUT_COMMIT,
         work_precision=drawn(plots.work_precision), lines=drawn(plots.lines), bars=drawn(plots.bars),
     )
     pages.filters.update(

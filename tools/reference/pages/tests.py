@@ -1,11 +1,13 @@
 """Tests of the figures of the pages. The tests of the crate run this file."""
 
 import unittest
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
 import figures
+import state
 import tables
 
 
@@ -116,6 +118,32 @@ class Index(unittest.TestCase):
 
     def test_the_diagram_leaves_out_what_another_choice_beats(self):
         self.assertEqual(len(figures.overview(self.CHOICES)), 5)
+
+
+class State(unittest.TestCase):
+    def test_each_committed_table_is_declared_once(self):
+        declared = [name for *_, names in state.MEASURED for name in names.split()]
+        self.assertEqual(sorted(declared + state.WITHOUT_COMMIT), sorted(path.stem for path in tables.COMMITTED.glob("*.csv")))
+        for name in declared:
+            self.assertIn("commit", tables.read(tables.COMMITTED, name), name)
+
+    def test_commands_are_jobs_and_sources_exist(self):
+        jobs = (tables.ROOT / "tools/reference/workflow/Snakefile").read_text()
+        for command, sources, names in state.MEASURED:
+            self.assertTrue(command is None or f'("{command}",' in jobs, command)
+            self.assertLessEqual(set(sources.split()), state.SOURCES.keys(), names)
+        for path in sum(state.SOURCES.values(), []):
+            self.assertTrue(path.startswith(":(") or (tables.ROOT / path.removeprefix(":!")).exists(), path)
+
+    def test_sources_belong_to_the_commit_of_a_table(self):
+        measured = (tables.ROOT / "tools/reference/src/report/provenance.rs").read_text()
+        for path in sum(state.SOURCES.values(), []):
+            if not path.startswith(":"):
+                folders = [Path(path), *Path(path).parents]
+                self.assertTrue(any(f'"{folder}",' in measured for folder in folders), path)
+
+    def test_a_commit_that_git_lacks_is_unknown(self):
+        self.assertEqual(state.since("0123456789ab-dirty", "RTL"), "unknown")
 
 
 class Formats(unittest.TestCase):

@@ -46,8 +46,11 @@ impl Provenance {
 }
 
 fn commit() -> String {
-    const MEASURED: [&str; 8] = [
+    const MEASURED: [&str; 11] = [
         "Cargo.lock",
+        "Cargo.toml",
+        "build.rs",
+        "memory.x",
         "firmware",
         "gateware",
         "tools/emulated-board",
