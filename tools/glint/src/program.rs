@@ -59,7 +59,7 @@ pub fn check(bytes: &[u8], path: &Path) -> Result<(), InputError> {
     if !image::is_flat(bytes) {
         return error(flat, format!("the bytes {first:02x?}"));
     }
-    Ok(())
+    image::check_length(bytes).or_else(|found| error(flat, found.to_string()))
 }
 
 #[cfg(test)]
@@ -84,6 +84,10 @@ mod tests {
             assert!(error.ends_with(&format!("found {found}")), "{error}");
         }
         // lui x1, 0x40000
-        assert!(check(&[0xb7, 0, 0, 0x40], Path::new("a.bin")).is_ok());
+        let mut program = vec![0xb7, 0, 0, 0x40];
+        assert!(check(&program, Path::new("a.bin")).is_ok());
+        program.resize(image::MAX_IMAGE + 1, 0);
+        let found = "found a flat binary of 7340033 bytes, which is longer than the program's part of main memory, 7340032 bytes";
+        assert!(refused(&program).ends_with(found));
     }
 }

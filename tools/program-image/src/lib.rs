@@ -20,13 +20,16 @@ pub const MAGIC: [u8; 4] = *b"\x7fELF";
 /// Address at which the BIOS loads and starts a memory image.
 pub const START_ADDRESS: u32 = MAIN_RAM.base;
 
+/// Largest length of a memory image in bytes: the program's part of a main memory of 128 MB, `PROGRAM` of `firmware/windows/128.x`.
+pub const MAX_IMAGE: usize = 7 << 20;
+
 /// Number of bytes at the start of a file that decide whether it is a text.
 const START: usize = 256;
 
 /// Symbol of the build id in a program.
 const BUILD_ID_SYMBOL: &str = "GLINT_BUILD_ID";
 
-/// Reason why an ELF file is not a program for a board. Each text follows "found" in an error.
+/// Reason why a file is not a program for a board. Each text follows "found" in an error.
 #[derive(Debug, thiserror::Error)]
 pub enum ImageError {
     /// The file is damaged, or is not for a 32-bit processor.
@@ -70,6 +73,11 @@ pub enum ImageError {
     /// A segment is outside of the program's part of main memory.
     #[error("a segment from {:#010x} to {:#010x}, outside of the program's part of main memory", .0.start, .0.end)]
     Segment(Range<u64>),
+    /// A flat binary is longer than the program's part of main memory.
+    #[error(
+        "a flat binary of {0} bytes, which is longer than the program's part of main memory, {MAX_IMAGE} bytes"
+    )]
+    Length(usize),
     /// Two segments overlap.
     #[error("a segment at {0:#010x} that overlaps the previous segment")]
     Overlap(u64),
@@ -109,13 +117,24 @@ pub fn may_be_program(name: &str, file: &[u8]) -> bool {
 /// Returns the memory image of a program, an ELF file or a flat binary, for the boards with 128 MB of main memory.
 ///
 /// # Errors
-/// [`ImageError`] for an ELF file.
+/// [`ImageError`].
 pub fn of_file(file: &[u8]) -> Result<Vec<u8>, ImageError> {
     if file.starts_with(&MAGIC) {
-        of_elf(file, MAIN_RAM.size.into())
-    } else {
-        Ok(file.to_owned())
+        return of_elf(file, MAIN_RAM.size.into());
     }
+    check_length(file)?;
+    Ok(file.to_owned())
+}
+
+/// Checks the length of a flat binary.
+///
+/// # Errors
+/// [`ImageError::Length`].
+pub const fn check_length(flat: &[u8]) -> Result<(), ImageError> {
+    if flat.len() > MAX_IMAGE {
+        return Err(ImageError::Length(flat.len()));
+    }
+    Ok(())
 }
 
 /// Returns the memory image of an ELF file, from the base of main memory, for a board with `main_ram` bytes of main memory.
@@ -195,6 +214,13 @@ pub fn symbol(file: &ElfFile32<Endianness>, name: &str) -> Option<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_largest_image_fills_the_window_of_programs() {
+        let windows = include_str!("../../../firmware/windows/128.x");
+        let window = "PROGRAM : ORIGIN = 0x40000000, LENGTH = 7M";
+        assert!(windows.contains(window) && MAX_IMAGE == 7 << 20);
+    }
 
     #[test]
     fn meshes_and_texts_are_no_programs() {
