@@ -46,8 +46,8 @@ export function startConsole(send) {
     // Replaces tabs and unpaired surrogates. The browser's limit on the length of the input may cut a
     // surrogate pair.
     const line = typed.replace(/[\t\p{Surrogate}]/gu, " ");
-    if (line.trim() === "") return;
-    if (history.at(-1) !== line) history.push(line);
+    // An empty line is sent, too: it restarts a program that has ended.
+    if (line.trim() !== "" && history.at(-1) !== line) history.push(line);
     place = history.length;
     send({ type: "command", line });
   }

@@ -135,6 +135,8 @@ fn the_mouse_moves_the_camera() {
     let length = |eye: [f64; 3]| eye.iter().map(|c| c * c).sum::<f64>().sqrt();
     // A sensor that steered before does not move the camera any more.
     browser.evaluate(&page, "document.getElementById('line').focus()");
+    // An empty line changes nothing.
+    browser.type_line(&page, "");
     browser.type_line(&page, "scene default");
     browser.type_line(&page, "imu orbit");
     let first = view(&mut browser, "first");

@@ -5,6 +5,7 @@ use crate::browser::{Browser, Page};
 use crate::served::Served;
 use crate::upload::drop_files;
 use glint_board_api::built;
+use litex_pac::BUILD_ID;
 
 const LOG: &str = "document.getElementById('log').textContent";
 const NOTICE: &str = "document.getElementById('notice').textContent";
@@ -96,32 +97,52 @@ fn a_dropped_program_replaces_the_running_one_and_its_faults_are_shown() {
     );
     drop_files(&mut browser, &page, &[("faults", elf("faults"))]);
     browser.wait(&page, &format!("{NOTICE}.startsWith('faults runs, ')"));
-    browser.evaluate(
-        &page,
-        "document.querySelector('[aria-label=\"switch 4\"]').click()",
-    );
-    for text in [
-        "trap: illegal instruction",
-        "press Enter to restart",
-        " is in update, ",
-    ] {
-        browser.wait(&page, &format!("{LOG}.includes('{text}')"));
+    for (starts, (switch, texts)) in (1..).zip([
+        (0, ["panicked at ", "a fault on purpose"]),
+        (2, ["stack overflow: ", " is in "]),
+        (4, ["trap: illegal instruction", " is in update, "]),
+    ]) {
+        let start = "faults: switches 0 to 4";
+        browser.wait(&page, &format!("{LOG}.split('{start}').length > {starts}"));
+        let click = format!("document.querySelector('[aria-label=\"switch {switch}\"]').click()");
+        browser.evaluate(&page, &click);
+        for text in texts {
+            browser.wait(&page, &format!("{LOG}.includes('{text}')"));
+        }
+        let halt = "press Enter to restart";
+        browser.wait(&page, &format!("{LOG}.split('{halt}').length > {starts}"));
+        browser.evaluate(&page, &click);
+        browser.evaluate(&page, "document.getElementById('line').focus()");
+        browser.type_line(&page, "");
     }
-    browser.evaluate(
-        &page,
-        "document.querySelector('[aria-label=\"switch 4\"]').click()",
-    );
 
-    // A program for other boards is refused, and the next one runs.
-    let mut other = elf("cube");
+    // Programs for other boards are refused, and the next one runs.
+    let mut unlinked = elf("cube");
+    let mut other = unlinked.clone();
     let name = b"_windows_end\0";
-    let at = other.windows(name.len()).position(|part| part == name);
-    other[at.unwrap()] = b'x';
-    drop_files(&mut browser, &page, &[("other.elf", other)]);
-    browser.wait(
-        &page,
-        &format!("{NOTICE}.includes('without the symbol _windows_end')"),
-    );
+    let at = unlinked.windows(name.len()).position(|part| part == name);
+    unlinked[at.unwrap()] = b'x';
+    let id = BUILD_ID.to_le_bytes();
+    let starts: Vec<_> = (0..other.len() - 4)
+        .filter(|&at| other[at..at + 4] == id)
+        .collect();
+    for at in starts {
+        other[at] ^= 0xff;
+    }
+    let mut large = vec![0x13; 4];
+    large.resize((7 << 20) + 1, 0);
+    for (file, bytes, text) in [
+        ("unlinked.elf", unlinked, "without the symbol _windows_end"),
+        ("other.elf", other, "found a program for gateware "),
+        (
+            "large.bin",
+            large,
+            "longer than the program's part of main memory",
+        ),
+    ] {
+        drop_files(&mut browser, &page, &[(file, bytes)]);
+        browser.wait(&page, &format!("{NOTICE}.includes(\"{text}\")"));
+    }
     drop_files(&mut browser, &page, &[("cube.elf", elf("cube"))]);
     browser.wait(&page, &format!("{NOTICE}.startsWith('cube.elf runs, ')"));
     wait_for_light(&mut browser, &page, 1_000);
