@@ -69,17 +69,11 @@ fn normalised_quotient(number: u64, divisor: u32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::random::lengths;
 
     #[test]
     fn quotients_are_rounded_down() {
-        let mut state = 1_u64;
-        let mut random = || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            // Random numbers of all lengths.
-            state.rotate_right(29) >> (state >> 58)
-        };
+        let mut random = lengths(1);
         for _ in 0..1_000_000 {
             let (number, divisor) = (random(), random().max(1));
             assert_eq!(quotient(number, divisor), number / divisor);
@@ -100,13 +94,7 @@ mod tests {
 
     #[test]
     fn fractions_are_rounded_down() {
-        let mut state = 2_u64;
-        let mut random = || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            state.rotate_right(29) >> (state >> 58)
-        };
+        let mut random = lengths(2);
         for _ in 0..200_000 {
             let (number, divisor) = (random(), (random() >> 1).max(1));
             for fraction in [0, 28, 32] {

@@ -159,6 +159,7 @@ pub(crate) const fn wide(a: i32, b: i32) -> i64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::random::lengths;
     use std::format;
 
     fn check<T: Copy + fmt::Display>(number: T)
@@ -170,14 +171,7 @@ mod tests {
 
     #[test]
     fn decimals_equal_those_of_the_crate() {
-        let mut state = 1_u64;
-        let mut random = || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            // Random numbers of all lengths.
-            state.rotate_right(29) >> (state >> 58)
-        };
+        let mut random = lengths(1);
         let ends = [
             0,
             1,
