@@ -11,8 +11,7 @@ use glint::board::{self, AnyBoard, BoardName};
 use glint::console::BIOS_PROMPT;
 use glint::error::quote;
 use glint::formats::read_up_to;
-use glint::program;
-use glint::web::{Server, Watched};
+use glint::web::{Server, Watched, read_program};
 use glint_board_api::pace::SystemClock;
 use glint_core::console::PROMPT;
 use glint_live_page::{Live, LiveSimulation, Places};
@@ -95,15 +94,12 @@ impl BoardArguments {
     /// Serves the live page.
     fn serve(&self, address: SocketAddr) -> anyhow::Result<()> {
         let ready = self.ready()?;
-        if let (BoardName::Serial(_), Some(path)) = (&self.board, &self.line.firmware) {
-            // The page loads it; a file that is no program is an error here.
-            program::read(path)?;
-        }
-        let watched = self.line.firmware.clone();
-        let watched = watched.and_then(|path| match self.board {
-            BoardName::Serial(_) => Some(Watched::to_load(path, self.watch)),
-            _ => self.watch.then(|| Watched::loaded(path)),
-        });
+        let watched = self.line.firmware.clone().filter(|_| self.watch);
+        let watched = watched.map(Watched::new);
+        // A simulated board starts with its program.
+        let first = self.line.firmware.as_deref();
+        let first = first.filter(|_| !self.board.is_simulated());
+        let first = first.map(read_program).transpose()?;
         let server = Server::bind(address).with_context(|| format!("--web {address}"))?;
         let mut board: Box<dyn Live> = match &self.board {
             // The page finds the board's firmware, or loads it.
@@ -128,7 +124,8 @@ impl BoardArguments {
             note("on other devices, replace the host in this address by this machine's address");
         }
         let _ready = ready.map(|ready| ready.write(&url)).transpose()?;
-        Ok(server.run(&mut *board, &self.board.to_string(), watched, &stop)?)
+        let name = self.board.to_string();
+        Ok(server.run(&mut *board, &name, first, watched, &stop)?)
     }
 
     /// Loads the program onto a board on a serial port, and opens its console, or without a terminal prints its output, until Ctrl-C.

@@ -16,4 +16,4 @@ pub mod server;
 mod watch;
 
 pub use server::Server;
-pub use watch::Watched;
+pub use watch::{Watched, read_program};

@@ -3,6 +3,7 @@
 use super::connection::{self, PATIENCE};
 use super::watch::Watched;
 use crate::board::BoardError;
+use glint_live_page::channels::Program;
 use glint_live_page::files::{FILES, File, SCRIPT};
 use glint_live_page::hub::MAX_VIEWERS;
 use glint_live_page::{Channels, Live, session};
@@ -121,8 +122,8 @@ impl Server {
         Ok(format!("http://{address}/{}/", self.token))
     }
 
-    /// Serves the page of the board `name`, whose firmware is running, until `stop` is set. Whenever the file `watched` changes, the board
-    /// starts its program.
+    /// Serves the page of the board `name` until `stop` is set. The board starts the program `first`; without one, its firmware is running.
+    /// Whenever the file `watched` changes, the board starts its program.
     ///
     /// # Errors
     /// The line to the board has failed.
@@ -130,6 +131,7 @@ impl Server {
         self,
         board: &mut dyn Live,
         name: &str,
+        first: Option<Program>,
         watched: Option<Watched>,
         stop: &AtomicBool,
     ) -> Result<(), BoardError> {
@@ -149,6 +151,9 @@ impl Server {
                 accept(stream, &served);
             }
         });
+        if let Some(first) = first {
+            shared.channels.start(first);
+        }
         if let Some(watched) = watched {
             let shared = Arc::clone(&shared);
             // This thread ends with the program, too.

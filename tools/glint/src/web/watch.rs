@@ -1,5 +1,6 @@
-//! Starts a program from its file, and again whenever the file changes.
+//! Starts a program again whenever its file changes.
 
+use crate::error::InputError;
 use crate::program;
 use glint_live_page::channels::{Channels, Program};
 use std::fs;
@@ -18,39 +19,37 @@ fn stamp(path: &Path) -> Stamp {
     Some((data.modified().ok()?, data.len()))
 }
 
+/// Reads a program for the page.
+///
+/// # Errors
+/// Those of [`program::read`].
+pub fn read_program(path: &Path) -> Result<Program, InputError> {
+    let program::Program { image, places } = program::read(path)?;
+    let name = path.file_name().unwrap_or_default();
+    Ok(Program {
+        name: name.to_string_lossy().into_owned(),
+        image,
+        places,
+    })
+}
+
 /// The file of a program that is watched.
 pub struct Watched {
     path: PathBuf,
     /// The stamp of the file from which the running program was read.
     known: Stamp,
-    /// Whether only the first program is started.
-    is_once: bool,
 }
 
 impl Watched {
-    /// Watches the file of the running program for changes from now on. Call this before the program is read, so that no change is missed.
+    /// Watches the file at `path` for changes from now on. Call this before the program is read, so that no change is missed.
     #[must_use]
-    pub fn loaded(path: PathBuf) -> Self {
+    pub fn new(path: PathBuf) -> Self {
         let known = stamp(&path);
-        Self {
-            path,
-            known,
-            is_once: false,
-        }
+        Self { path, known }
     }
 
-    /// Starts the program at `path`, and with `is_watched` again whenever its file changes.
-    #[must_use]
-    pub fn to_load(path: PathBuf, is_watched: bool) -> Self {
-        Self {
-            path,
-            known: None,
-            is_once: !is_watched,
-        }
-    }
-
-    /// Polls the file, in an endless loop if it is watched. After a change, and when two polls in a row have found the same stamp, starts
-    /// the new program on the board, or sends the pages the reason why the file is not a program.
+    /// Polls the file in an endless loop. After a change, and when two polls in a row have found the same stamp, starts the new program on
+    /// the board, or sends the pages the reason why the file is not a program.
     pub(super) fn watch(mut self, channels: &Channels) {
         let mut last = self.known;
         loop {
@@ -62,20 +61,9 @@ impl Watched {
                 continue;
             }
             self.known = found;
-            match program::read(&self.path) {
-                Ok(program::Program { image, places }) => {
-                    let name = self.path.file_name().unwrap_or_default();
-                    let name = name.to_string_lossy().into_owned();
-                    channels.start(Program {
-                        name,
-                        image,
-                        places,
-                    });
-                }
+            match read_program(&self.path) {
+                Ok(program) => channels.start(program),
                 Err(error) => channels.hub.notify(error.to_string(), true),
-            }
-            if self.is_once {
-                return;
             }
         }
     }
