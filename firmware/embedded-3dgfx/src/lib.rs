@@ -171,8 +171,8 @@ fn depths(primitive: &DrawPrimitive) -> Option<[u32; 3]> {
     }
 }
 
-/// A number in units of 2^-16, truncated; saturates, and is 0 for what is no number, as `(z * 65536.0) as u32` in the rasteriser of
-/// `embedded-3dgfx`. Integers take the soft core a tenth of the cycles.
+/// Converts a number to units of 2^-16: truncates, saturates, and makes 0 of NaN, like `(z * 65536.0) as u32` in the rasteriser of
+/// `embedded-3dgfx`. The soft core has no floating-point unit, so this function uses the bits of the number.
 fn fixed(z: f32) -> u32 {
     if z.is_nan() || z.is_sign_negative() {
         return 0;

@@ -61,7 +61,7 @@ impl fmt::Display for DrawError {
         match self {
             // Only these parts draw frames by the model.
             Self::Render(error) if CPU.is_built || STEREO.is_built => error.fmt(f),
-            Self::Render(_) => Ok(()),
+            Self::Render(_) => f.write_str("the frame cannot be drawn"),
             Self::NoCpu(None) => CPU.fmt(f),
             Self::NoCpu(Some(fallback)) => write!(f, "{fallback}; {}", fallback.part()),
         }

@@ -256,8 +256,8 @@ impl<'p> Picture<'p> {
     }
 
     /// Adds a list of triangles in pixels, and sets the picture's size and camera for it, so all lists of a picture have the same size;
-    /// lights and fog return to their defaults, so triangles have their own colours. Set further options in the result. The engine draws flat shading; smooth shading is drawn by the
-    /// soft core.
+    /// lights and fog return to their defaults, so triangles have their own colours. Set further options in the result. The engine draws
+    /// flat shading, the soft core smooth shading.
     ///
     /// ```
     /// # use glint_program::core::{colour::Rgb565, picture::Size, texture::Blend};
@@ -302,7 +302,7 @@ impl<'p> Picture<'p> {
         self.appearance.lights.clear();
         self.appearance.ambient = None;
         self.appearance.fog = U4_28::ZERO;
-        // Every list is a valid mesh.
+        // Every list is a valid mesh, unless the program has leaked its `New`.
         let mesh = list.mesh().map_err(|_| PictureError::Meshes)?;
         self.mesh(mesh, Matrix::IDENTITY)
     }
