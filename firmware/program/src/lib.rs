@@ -110,7 +110,7 @@ pub use glint_model as model;
 pub use glint_scene as scene;
 pub use picture::{MAX_RECTANGLES, Picture, PictureError};
 pub use program::Program;
-pub use shown_scene::{SceneError, ShownScene};
+pub use shown_scene::{SceneError, SceneFiles, ShownScene};
 
 /// Clock cycles of the soft core since reset, for measurements of a program's own code; always 0 on a host.
 ///

@@ -406,12 +406,12 @@ impl<'p> Picture<'p> {
     /// ```
     /// # use glint_program::{Board, Program, host::Host};
     /// use glint_program::core::fixed::{Q32_32, Turns};
-    /// use glint_program::{Picture, PictureError, ShownScene};
+    /// use glint_program::{Picture, PictureError, SceneFiles, ShownScene};
     ///
     /// # struct Sponge(ShownScene);
     /// # impl Program for Sponge {
     /// fn start(board: &mut Board) -> Self {
-    ///     Self(ShownScene::new(board, "field menger:3\nbackground sky\nsize 320 180", &[]).unwrap())
+    ///     Self(ShownScene::new(board, "field menger:3\nbackground sky\nsize 320 180", SceneFiles::default()).unwrap())
     /// }
     /// fn update(&mut self, board: &mut Board) {
     ///     let azimuth = board.turns(Q32_32::lit("0.1"));

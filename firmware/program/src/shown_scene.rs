@@ -6,6 +6,7 @@ use glint_core::camera::ViewError;
 use glint_core::mesh::Mesh;
 use glint_core::object::MAX_OBJECTS;
 use glint_core::picture::{Backend, Size};
+use glint_core::texture::Texture;
 use glint_core::wireframe::{self, CUBE, ProgramError};
 use glint_model::{Frame, Object};
 use glint_scene::{Assets, Board as _, LineError, Name, Scene, SettingError, lines};
@@ -17,12 +18,12 @@ use crate::Board;
 ///
 /// ```
 /// # use glint_program::{Board, Picture, PictureError, Program, host::Host};
-/// use glint_program::{SceneError, ShownScene};
+/// use glint_program::{SceneError, SceneFiles, ShownScene};
 ///
 /// # struct Errors(String);
 /// # impl Program for Errors {
 /// fn start(board: &mut Board) -> Self {
-///     let error = ShownScene::new(board, "fov 60\nfog lots", &[]).err();
+///     let error = ShownScene::new(board, "fov 60\nfog lots", SceneFiles::default()).err();
 ///     # assert!(matches!(error, Some(SceneError::Line(_))));
 ///     Self(error.map_or(String::new(), |error| error.to_string()))
 /// }
@@ -62,11 +63,61 @@ impl fmt::Display for SceneError<'_> {
 
 impl core::error::Error for SceneError<'_> {}
 
-/// A scene with its meshes, for [`Picture::scene`](crate::Picture::scene).
+/// Meshes, textures and wireframe programs of a program by the names that a scene uses for them. They have priority over built-in ones, and
+/// of two with one name the first is used.
 ///
 /// ```
 /// # use glint_program::{Board, Picture, PictureError, Program, host::Host};
-/// use glint_program::ShownScene;
+/// # use glint_program::core::{fixed::Q5_11, wireframe::{self, CUBE}};
+/// # use glint_program::lines::Lines;
+/// use glint_program::core::font::Font;
+/// use glint_program::{SceneFiles, ShownScene};
+///
+/// # struct Scenes([ShownScene; 3], usize);
+/// # impl Program for Scenes {
+/// fn start(board: &mut Board) -> Self {
+///     let font = Font::draw(vec![0; Font::BYTES].leak()).unwrap();
+///     # let viewing = *wireframe::Program::new_checked(CUBE.as_flattened()).unwrap().viewing();
+///     # let mut lines = Lines::<8>::new(viewing);
+///     # lines.add([[Q5_11::lit("-1"); 3], [Q5_11::lit("1"); 3]]);
+///     # let line = Box::leak(Box::new(lines)).program().unwrap();
+///     let files = SceneFiles {
+///         textures: &[("letters", font.texture())],
+///         programs: &[("line", line)],
+///         ..SceneFiles::default()
+///     };
+///     let texts = ["scene crate\ntexture letters", "program line", "scene crate"];
+///     Self(texts.map(|text| ShownScene::new(board, text, files).unwrap()), 0)
+/// }
+/// #     fn update(&mut self, board: &mut Board) { self.1 = board.pictures() as usize % 3 }
+/// #     fn draw<'p>(&'p self, picture: &mut Picture<'p>) -> Result<(), PictureError> { picture.scene(&self.0[self.1]) }
+/// # }
+/// # let mut host = Host::<Scenes>::start();
+/// # host.run(1)?;
+/// # let letters = host.picture().to_vec();
+/// # host.run(1)?;
+/// # let lit = host.picture().iter().filter(|&&pixel| pixel != 0).count();
+/// # assert!((50..1_000).contains(&lit), "one line, not the cube: {lit}");
+/// # host.run(1)?;
+/// # let changed = host.picture().iter().zip(&letters).filter(|(a, b)| a != b).count();
+/// # assert!(changed > 1_000, "the crate has its own texture: {changed}");
+/// # Ok::<(), glint_program::host::HostError>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SceneFiles<'f> {
+    /// Meshes, for `scene` and `object add`.
+    pub meshes: &'f [(&'f str, Mesh<'static>)],
+    /// Textures, for `texture`.
+    pub textures: &'f [(&'f str, Texture<'static>)],
+    /// Wireframe programs, for `program`.
+    pub programs: &'f [(&'f str, wireframe::Program<'static>)],
+}
+
+/// A scene with its files, for [`Picture::scene`](crate::Picture::scene).
+///
+/// ```
+/// # use glint_program::{Board, Picture, PictureError, Program, host::Host};
+/// use glint_program::{SceneFiles, ShownScene};
 ///
 /// struct Rings(ShownScene);
 ///
@@ -74,7 +125,7 @@ impl core::error::Error for SceneError<'_> {}
 ///     fn start(board: &mut Board) -> Self {
 ///         // `glint scene show FILE` prints the commands of a scene file.
 ///         let text = "background sky\nobject add torus\nobject colour 1 ff0000\nobject add sphere scale 0.4\nobject colour 2 0000ff";
-///         Self(ShownScene::new(board, text, &[]).unwrap())
+///         Self(ShownScene::new(board, text, SceneFiles::default()).unwrap())
 ///     }
 ///     fn update(&mut self, _: &mut Board) {}
 ///     fn draw<'p>(&'p self, picture: &mut Picture<'p>) -> Result<(), PictureError> {
@@ -96,22 +147,22 @@ pub struct ShownScene {
     pub scene: Scene,
     mesh: Option<Mesh<'static>>,
     objects: Vec<Mesh<'static>, MAX_OBJECTS>,
+    texture: Option<Texture<'static>>,
     program: wireframe::Program<'static>,
 }
 
 impl ShownScene {
-    /// The scene that results from the commands of `text`, one per line, on the board's start scene. `meshes` are meshes of the program by
-    /// their names; they have priority over built-in meshes. Motions are left out, because the program moves the scene. Names of textures
-    /// and wireframe programs are errors.
+    /// The scene that results from the commands of `text`, one per line, on the board's start scene. Motions are left out, because the
+    /// program moves the scene.
     ///
     /// ```
     /// # use glint_program::{Board, Picture, PictureError, Program, host::Host};
-    /// use glint_program::ShownScene;
+    /// use glint_program::{SceneFiles, ShownScene};
     /// # struct Ship(ShownScene);
     /// # impl Program for Ship {
     /// fn start(board: &mut Board) -> Self {
-    ///     let ship = board.cube();
-    ///     Self(ShownScene::new(board, "object add ship\nfov 40", &[("ship", ship)]).unwrap())
+    ///     let files = SceneFiles { meshes: &[("ship", board.cube())], ..SceneFiles::default() };
+    ///     Self(ShownScene::new(board, "object add ship\nfov 40", files).unwrap())
     /// }
     /// #     fn update(&mut self, _: &mut Board) {}
     /// #     fn draw<'p>(&'p self, picture: &mut Picture<'p>) -> Result<(), PictureError> { picture.scene(&self.0) }
@@ -125,10 +176,10 @@ impl ShownScene {
     pub fn new<'t>(
         board: &mut Board,
         text: &'t str,
-        meshes: &[(&str, Mesh<'static>)],
+        files: SceneFiles,
     ) -> Result<Self, SceneError<'t>> {
         let mut scene = Scene::new(board.defaults()).map_err(SceneError::View)?;
-        let mut content = Content { board, meshes };
+        let mut content = Content { board, files };
         for line in lines(text) {
             let (number, line) = line.map_err(SceneError::Line)?;
             let applied = line.apply(&mut scene, &mut content);
@@ -147,12 +198,16 @@ impl ShownScene {
                 let _ = objects.push(find(&object.mesh)?);
             }
         }
-        let program = wireframe::Program::new_checked(CUBE.as_flattened());
+        let texture = scene.texture.as_deref();
+        let program = scene.program.as_deref();
+        let program = program.and_then(|name| named(files.programs, name));
+        let cube = || wireframe::Program::new_checked(CUBE.as_flattened());
         Ok(Self {
-            scene,
             mesh,
             objects,
-            program: program.map_err(SceneError::Program)?,
+            texture: texture.and_then(|name| named(files.textures, name)),
+            program: program.map_or_else(cube, Ok).map_err(SceneError::Program)?,
+            scene,
         })
     }
 
@@ -169,23 +224,28 @@ impl ShownScene {
         self.scene.frame(Assets {
             mesh: self.mesh,
             objects,
-            replacement_texture: None,
+            replacement_texture: self.texture,
             program: self.program,
         })
     }
 }
 
-/// The board and the meshes of a program, as a scene sees them.
+/// The first of `files` with this name.
+fn named<T: Copy>(files: &[(&str, T)], name: &str) -> Option<T> {
+    let found = files.iter().find(|(own, _)| *own == name);
+    found.map(|(_, file)| *file)
+}
+
+/// The board and the files of a program, as a scene sees them.
 struct Content<'c> {
     board: &'c mut Board,
-    meshes: &'c [(&'c str, Mesh<'static>)],
+    files: SceneFiles<'c>,
 }
 
 impl Content<'_> {
     /// The mesh with this name: one of the program, or a built-in one that has been made.
     fn find(&self, name: &str) -> Option<Mesh<'static>> {
-        let own = self.meshes.iter().find(|(own, _)| *own == name);
-        own.map(|(_, mesh)| *mesh).or_else(|| self.board.made(name))
+        named(self.files.meshes, name).or_else(|| self.board.made(name))
     }
 }
 
@@ -206,11 +266,11 @@ impl glint_scene::Board for Content<'_> {
         self.find(name)
     }
 
-    fn has_texture(&self, _: &str) -> bool {
-        false
+    fn has_texture(&self, name: &str) -> bool {
+        named(self.files.textures, name).is_some()
     }
 
-    fn has_program(&self, _: &str) -> bool {
-        false
+    fn has_program(&self, name: &str) -> bool {
+        named(self.files.programs, name).is_some()
     }
 }
