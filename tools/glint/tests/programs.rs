@@ -574,7 +574,11 @@ fn of_page(frame: &Frame) -> Vec<u8> {
 fn the_pages_of_programs_show_their_pictures_sizes_and_rates() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let mut table = Table::read(root.join("docs/program-sizes.md"));
+    let pages = ["docs/programs.md", "docs/gallery.md"];
+    let pages = pages.map(|page| fs::read_to_string(root.join(page)).unwrap());
     for (name, buttons) in PROGRAMS {
+        let shows = format!("](pictures/program-{name}.png)");
+        assert!(pages.iter().all(|page| page.contains(&shows)), "{name}");
         let image = image(name);
         let mut board = board::emulated(&image).unwrap();
         match name {
