@@ -18,6 +18,9 @@ use crate::{paths, run};
 /// Package of the firmware.
 const FIRMWARE: &str = "glint-firmware";
 
+/// Package of the alternative kernels.
+const VARIANTS: &str = "glint-variants";
+
 /// Feature that adds kernels of other crates, for comparison by the console command `bench`.
 const PEERS: &str = "peers";
 
@@ -63,20 +66,21 @@ pub struct Image {
 /// # Errors
 /// The firmware does not compile, or exceeds the SoC's memory.
 pub fn build(board: Board, features: &[&str]) -> Result<Image> {
-    let for_speed = features.contains(&PEERS).then_some("profile.firmware");
+    let for_speed: &[&str] = match features.contains(&PEERS) {
+        true => &[FIRMWARE, VARIANTS, "\"*\""],
+        false => &[],
+    };
     compile(board, features, true, features, for_speed)
 }
 
-/// Checks that the firmware with the report's kernels compiles and fits the memory: this build needs more SRAM of the soft core than any
-/// other. Unlike [`build`], the check compiles the other crates with the standard optimisation, which takes less time; their
-/// functions in the SRAM are smaller than in [`build`].
+/// Checks that the firmware with the report's kernels compiles and fits the memory. Unlike [`build`], the check compiles the crates that
+/// have no functions in the SRAM with the standard optimisation, which takes less time.
 ///
 /// # Errors
 /// Those of [`build`].
 pub fn check_peers() -> Result<Image> {
     let suffixes = [PEERS, "check"];
-    let for_speed = format!("profile.firmware.package.{FIRMWARE}");
-    compile(Board::Virtual, &suffixes, true, &[PEERS], Some(&for_speed))
+    compile(Board::Virtual, &suffixes, true, &[PEERS], &[FIRMWARE])
 }
 
 /// Builds the firmware for `board` with only the parts that `scenes` need, and with `features`. The image is `glint-SCENE….bin`,
@@ -93,17 +97,17 @@ pub fn build_for(board: Board, scenes: &[SceneFile], features: &[&str]) -> Resul
     let needs = Needs::of(scenes);
     let parts = needs.features.iter().map(|feature| feature.name);
     let parts: Vec<_> = parts.chain(features.iter().copied()).collect();
-    compile(board, &names, false, &parts, None)
+    compile(board, &names, false, &parts, &[])
 }
 
 /// Builds the firmware with `features`, and with the default features if `has_default`. `suffixes` are appended to the image's name. The
-/// packages in the section `for_speed` of the Cargo profile are optimised for speed.
+/// packages `for_speed`, where `"*"` is each from another project, are optimised for speed.
 fn compile(
     board: Board,
     suffixes: &[&str],
     has_default: bool,
     features: &[&str],
-    for_speed: Option<&str>,
+    for_speed: &[&str],
 ) -> Result<Image> {
     let main_ram = main_ram(board)?;
     let names: &[&str] = match board {
@@ -129,8 +133,10 @@ fn compile(
     cargo.env("GLINT_MAIN_RAM_MB", (main_ram >> 20).to_string());
     // Generic functions of other crates are compiled as a part of the crate that uses them, so this level also applies to the
     // generic kernels of other crates that `bench` measures.
-    if let Some(part) = for_speed {
-        cargo.arg("--config").arg(format!("{part}.opt-level = 3"));
+    for package in for_speed {
+        cargo
+            .arg("--config")
+            .arg(format!("profile.firmware.package.{package}.opt-level = 3"));
     }
     // A separate target folder, because cargo locks a target folder during a build.
     cargo
