@@ -114,7 +114,7 @@ impl Lights {
     /// Returns the colour of the lit sphere or cone `number` at the point `place`, relative to its centre or apex: (ambient +
     /// Σ max(0, n·l)·colour) times the material, plus the highlight. The normal n of a sphere is `place` divided by the radius, and l is
     /// the direction to a light.
-    pub(super) fn shine_on(&self, number: u8, spheres: &FixedSpheres, place: [i32; 3]) -> Rgb {
+    pub fn shine_on(&self, number: u8, spheres: &FixedSpheres, place: [i32; 3]) -> Rgb {
         let (length, cone) = match spheres.cone(number) {
             Some(cone) => (Length::below_apex(cone, place), Some(cone)),
             None => {

@@ -1,9 +1,10 @@
 //! Errors and cycles of kernels that have no page of their own: reciprocals, roots, lengths, quotients, depth codes, colours, the
-//! number formats of the pipeline's stages, fog, sky, luminance and the ends of lines.
+//! number formats of the pipeline's stages, fog, sky, luminance, the ends of lines, and light on fields.
 
 mod appearance;
 mod arithmetic;
 mod formats;
+mod light;
 mod pixels;
 mod trial;
 
@@ -52,7 +53,7 @@ type Family = (&'static str, fn(u32) -> Result<Vec<Trial>>);
 /// # Errors
 /// When the terminal refuses a progress bar, or a camera is invalid.
 pub fn measure(thinning: u32, cycles: &Cycles) -> Result<Vec<Row>> {
-    let families: [Family; 13] = [
+    let families: [Family; 16] = [
         ("reciprocal", |thinning| {
             Ok(arithmetic::reciprocals(thinning))
         }),
@@ -70,6 +71,9 @@ pub fn measure(thinning: u32, cycles: &Cycles) -> Result<Vec<Row>> {
         ("sky", appearance::skies),
         ("luminance", |thinning| Ok(appearance::luminances(thinning))),
         ("line", appearance::lines),
+        ("round", light::rounds),
+        ("highlight", light::highlights),
+        ("occlusion", light::occlusions),
     ];
     let bar = progress::bar(families.len() as u64)?;
     let mut rows = Vec::new();

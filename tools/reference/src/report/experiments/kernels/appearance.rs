@@ -12,7 +12,7 @@ use glint_model::raymarch::{FieldOptions, FieldSetup, Palette};
 use glint_model::{DepthScale, Fog, Sky};
 use glint_vectors::camera::Size as Pixels;
 
-use super::trial::{Errors, Trial};
+use super::trial::{Errors, Trial, trial};
 use crate::camera::Camera;
 
 /// Largest product of density and depth that is measured: the fog hides all but 0.03 % there.
@@ -21,17 +21,6 @@ const DENSEST: f64 = 8.0;
 const WHOLE: u32 = 12;
 /// Number of measured depths, and of measured lines.
 const INPUTS: u32 = 1 << 16;
-
-/// A trial whose cost is a number of bits.
-fn trial(kernel: &'static str, config: String, shipped: bool, bits: u32, errors: Errors) -> Trial {
-    Trial {
-        kernel,
-        config,
-        shipped,
-        bits: Some(bits),
-        errors,
-    }
-}
 
 /// The share of a colour that the fog hides at a product of density and depth, in 255ths.
 fn hidden(x: f64) -> f64 {

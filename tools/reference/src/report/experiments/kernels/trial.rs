@@ -31,6 +31,23 @@ impl Trial {
     }
 }
 
+/// A trial whose cost is a number of bits.
+pub fn trial(
+    kernel: &'static str,
+    config: String,
+    shipped: bool,
+    bits: u32,
+    errors: Errors,
+) -> Trial {
+    Trial {
+        kernel,
+        config,
+        shipped,
+        bits: Some(bits),
+        errors,
+    }
+}
+
 /// Statistics of errors, and the input with the largest error.
 #[derive(Default)]
 pub struct Errors {
