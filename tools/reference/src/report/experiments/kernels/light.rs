@@ -94,7 +94,7 @@ pub fn rounds(thinning: u32) -> Result<Vec<Trial>> {
     ];
     trials.push(trial(
         "round_light",
-        "rounded down, with normals and products: cosines of 8 bits".to_owned(),
+        "all rounded down, of fields: cosines of 8 bits".to_owned(),
         true,
         8,
         sweep(&|normal| {
@@ -135,7 +135,7 @@ pub fn highlights(thinning: u32) -> Result<Vec<Trial>> {
             255.0 * (0..squares).fold(start, |x, _| (x * x * unit).floor() / unit)
         };
         let power = 1 << squares;
-        let config = format!("same tangent, power {power}: factors of {bits} bits");
+        let config = format!("same tangent: power {power}, {bits} bits");
         Ok(trial(
             "highlight_tangent",
             config,
@@ -152,7 +152,7 @@ pub fn highlights(thinning: u32) -> Result<Vec<Trial>> {
             let start = ((1.0 - away).max(0.0) * unit).floor() / unit;
             255.0 * (0..2).fold(start, |x, _| (x * x * unit).floor() / unit)
         };
-        let config = format!("least error, power 4: factors of {bits} bits");
+        let config = format!("least error: power 4, {bits} bits");
         Ok(trial(
             "highlight_fitted",
             config,
@@ -171,7 +171,7 @@ pub fn highlights(thinning: u32) -> Result<Vec<Trial>> {
         fitted(12),
         sweep(&|highlight, _, cosine| highlight_share(highlight.steepness(), cosine).into()).map(
             |errors| {
-                let config = "least error, power 4, of fields: factors of 16 bits".to_owned();
+                let config = "least error: power 4, 16 bits, of fields".to_owned();
                 trial("highlight", config, true, 16, errors)
             },
         ),
