@@ -23,8 +23,8 @@ field cubes:2,0.4
     // The scenes of a board that runs alone
     BuiltIn::list(
         "demo",
-        &[feature::ANTIALIASING, feature::CPU, feature::DEMO, feature::FIELD, feature::FOG, feature::GESTURE, feature::IMU, feature::LIGHT, feature::MESH, feature::SKY, feature::STEREO, feature::VIEW, feature::WIREFRAME],
-        &["holoforge", "wireframe", "simplegpu", "poor-mans-vr", "cubes"],
+        &[feature::ANTIALIASING, feature::CPU, feature::DEMO, feature::FIELD, feature::FOG, feature::GESTURE, feature::IMU, feature::LIGHT, feature::MESH, feature::OBJECT, feature::SKY, feature::STEREO, feature::VIEW, feature::WIREFRAME],
+        &["holoforge", "wireframe", "simplegpu", "poor-mans-vr", "objects", "cubes"],
     ),
     // HoloForge: a mesh that a hand turns
     BuiltIn::picture(

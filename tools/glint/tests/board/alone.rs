@@ -18,11 +18,12 @@ pub const MS: u64 = 81_250;
 pub const PANEL: u64 = 600 * MS;
 
 /// The scenes of the built-in list, in order.
-const SCENES: [&str; 5] = [
+const SCENES: [&str; 6] = [
     "holoforge",
     "wireframe",
     "simplegpu",
     "poor-mans-vr",
+    "objects",
     "cubes",
 ];
 
@@ -71,11 +72,11 @@ fn alone() -> EmulatedBoard {
 #[test]
 fn scenes_take_turns() {
     let mut board = alone();
-    for number in [1, 2, 3, 4, 5, 1] {
+    for number in [1, 2, 3, 4, 5, 6, 1] {
         let (found, answer) = turn(&mut board);
         let name = SCENES[number - 1];
         assert_eq!(found, number);
-        assert_has(&answer, &format!("scene {number} of 5 {name}\r\n"));
+        assert_has(&answer, &format!("scene {number} of 6 {name}\r\n"));
         assert_has(&answer, "demo on\r\n");
         board.run(TURN_MS * MS);
     }
@@ -129,13 +130,14 @@ fn buttons_choose_scenes_and_hold_them() {
     press(&mut board, 1);
     assert_eq!(
         turn(&mut board).0,
-        5,
+        6,
         "the scene before the first is the last"
     );
     press(&mut board, 2);
     assert!(turn(&mut board).1.contains("demo held\r\n"));
     board.run(2 * TURN_MS * MS);
-    assert_eq!(turn(&mut board).0, 5);
+    assert_eq!(turn(&mut board).0, 6);
+    press(&mut board, 1);
     press(&mut board, 1);
     assert_eq!(
         turn(&mut board).0,

@@ -190,7 +190,7 @@ fn the_demo_goes_on_during_an_upload() {
     let lost = line.lost();
     line.say("demo on");
     press(&mut line.board, 0);
-    assert!(line.say("demo").contains("scene 2 of 5"));
+    assert!(line.say("demo").contains("scene 2 of 6"));
     let (changes, _) = line.watch(|console| upload(console, &large));
     assert!(changes > 0, "the next scene is shown");
     let scenes: HashSet<u16> = line.leds.iter().map(|leds| leds >> 4 & 0xf).collect();

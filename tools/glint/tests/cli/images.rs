@@ -39,7 +39,7 @@ fn an_image_has_scenes_in_order_and_their_meshes() {
     let text = |kind, name| image.contents.find(kind, name).unwrap().text().unwrap();
     assert_eq!(
         text(Kind::List, "start"),
-        "menger\ngears\nnet\nagain\nholoforge\nwireframe\nsimplegpu\npoor-mans-vr\ncubes\n"
+        "menger\ngears\nnet\nagain\nholoforge\nwireframe\nsimplegpu\npoor-mans-vr\nobjects\ncubes\n"
     );
     assert_eq!(
         text(Kind::Scene, "menger"),
