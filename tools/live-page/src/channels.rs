@@ -7,6 +7,7 @@ use crate::live::Live;
 use crate::message::ToPage;
 use crate::motion::Motion;
 use crate::orbit::Drag;
+use crate::scene::Scene;
 use glint_core::matrix::Axis;
 use glint_program_image::Places;
 use std::mem::{Discriminant, discriminant};
@@ -32,6 +33,8 @@ pub enum Request {
     Picture,
     /// Uploads a mesh or a texture, and shows it.
     Upload(Upload),
+    /// Uploads the files of a scene, and shows it.
+    Scene(Scene),
     /// Starts a program in place of the running one.
     Start(Program),
 }
@@ -67,7 +70,7 @@ impl Request {
         let command = match self {
             Self::Help(command) => command,
             Self::Command(_) | Self::Choose(..) | Self::Interrupt => "",
-            Self::Picture | Self::Upload(_) | Self::Start(_) => "",
+            Self::Picture | Self::Upload(_) | Self::Scene(_) | Self::Start(_) => "",
         };
         (discriminant(self), command)
     }

@@ -13,6 +13,7 @@
 //! | [`motion`] | the motion sensor that the page turns, and the hand that it moves |
 //! | [`live`] | boards that run in real time, with their monitor and pins |
 //! | [`orbit`] | the camera that the page moves by dragging on the picture |
+//! | [`scene`] | scene files that a page sends |
 //! | [`session`] | runs the board, its console and its transfers |
 //!
 //! A program passes the messages over sockets (`glint board --web`), or the board runs in the browser itself (`cargo xtask web`).
@@ -29,6 +30,7 @@ pub mod live;
 pub mod message;
 pub mod motion;
 pub mod orbit;
+pub mod scene;
 pub mod session;
 pub mod viewer;
 

@@ -6,6 +6,7 @@ use crate::hub::Hub;
 use crate::live::Live;
 use crate::message::{Entry, Pins, ToPage};
 use crate::orbit::{self, Drag};
+use crate::scene::{File, Scene};
 use glint_board_api::console::{self, Console, ConsoleError};
 use glint_board_api::flash::{self, FlashError};
 use glint_board_api::transfer::{self, MODEL, TransferError};
@@ -384,7 +385,12 @@ impl<'a> Session<'a> {
                 Some(Request::Choose(list, name)) => self.choose(list, &name),
                 Some(Request::Interrupt) => self.board.write(INTERRUPT),
                 Some(Request::Start(program)) => self.start_program(program),
-                Some(request @ (Request::Help(_) | Request::Picture | Request::Upload(_))) => {
+                Some(
+                    request @ (Request::Help(_)
+                    | Request::Picture
+                    | Request::Upload(_)
+                    | Request::Scene(_)),
+                ) => {
                     self.keep(request);
                     Ok(())
                 }
@@ -411,6 +417,7 @@ impl<'a> Session<'a> {
                 }
                 Ok(())
             }
+            Some(Request::Scene(scene)) => self.show_scene(scene),
             Some(Request::Picture) => self.ask_until_cancelled(send_picture).map(drop),
             Some(Request::Interrupt) => Ok(()),
             Some(Request::Start(program)) => self.start_program(program),
@@ -458,12 +465,36 @@ impl<'a> Session<'a> {
         let Some(choice) = self.channels.choices().find(list, name).cloned() else {
             return Ok(());
         };
-        let mut commands = choice.commands.into_iter();
-        let first = commands.next().unwrap_or_default();
-        self.type_line(&first)?;
-        self.waiting.extend(commands.map(Request::Command));
+        self.type_lines(choice.commands)?;
         self.frames = choice.frames.into();
         Ok(())
+    }
+
+    /// Types the first line at once, and the others one by one.
+    fn type_lines(&mut self, lines: Vec<String>) -> Result<(), BoardError> {
+        let mut lines = lines.into_iter();
+        let first = lines.next().unwrap_or_default();
+        self.type_line(&first)?;
+        self.waiting.extend(lines.map(Request::Command));
+        Ok(())
+    }
+
+    /// Uploads the files of a scene, and types its commands.
+    fn show_scene(&mut self, scene: Scene) -> Result<(), BoardError> {
+        if !scene.files.is_empty() {
+            let session = self.uploads.wrapping_add(1);
+            self.uploads = session.wrapping_add(scene.files.len() as u8);
+            if !self
+                .ask_until_cancelled(|console, hub| upload_all(console, hub, &scene, session))?
+            {
+                return Ok(());
+            }
+            self.update_lists()?;
+        }
+        let title = format!("the scene {} is shown", scene.name);
+        let text: Vec<_> = [title].into_iter().chain(scene.remarks).collect();
+        self.hub.notify(text.join("; "), false);
+        self.type_lines(scene.commands)
     }
 
     /// Moves the camera around the subject. The first motion stops the steering by sensor and hand.
@@ -529,7 +560,12 @@ impl<'a> Session<'a> {
             return;
         }
         let count = self.waiting.len();
-        (self.waiting).retain(|request| !matches!(request, Request::Picture | Request::Upload(_)));
+        (self.waiting).retain(|request| {
+            !matches!(
+                request,
+                Request::Picture | Request::Upload(_) | Request::Scene(_)
+            )
+        });
         if self.waiting.len() < count {
             self.hub.notify(NO_FIRMWARE, true);
         }
@@ -809,5 +845,34 @@ fn upload(
         text = format!("{text}; {remark}");
     }
     hub.notify(text, false);
+    Ok(())
+}
+
+/// Uploads the files of a scene. The first transfer has the number `session`.
+fn upload_all(
+    console: &mut Console<Watched>,
+    hub: &Hub,
+    scene: &Scene,
+    mut session: u8,
+) -> Result<(), TransferError> {
+    for File {
+        name,
+        bytes,
+        is_program,
+    } in &scene.files
+    {
+        if console.board().memory().is_some() {
+            transfer::stage(console, bytes)?;
+        }
+        let name = Some(name.as_str());
+        let progress = &mut reporter(hub);
+        if *is_program {
+            transfer::upload_program(console, bytes, name, session, progress)?;
+        } else {
+            transfer::upload(console, bytes, name, session, progress)?;
+        }
+        session = session.wrapping_add(1);
+    }
+    hub.end_progress();
     Ok(())
 }

@@ -5,6 +5,7 @@ use crate::channels::{Channels, Program, Request, Upload};
 use crate::hub::{Hub, Id};
 use crate::message::{FileHead, FromPage, ToPage};
 use crate::orbit::Drag;
+use crate::scene::{self, Scene};
 use glint_board_api::transfer::MODEL;
 use glint_core::console::{LINE_MAX, complete};
 use glint_mesh::convert::{Options, TextureOptions};
@@ -25,9 +26,9 @@ const MAX_NAME: usize = 100;
 /// The reason to close a page's connection.
 pub type Reason = &'static str;
 
-/// A mesh file with its auxiliary files, a texture file or a program, which the page is sending.
+/// A mesh or a scene file with its auxiliary files, a texture file or a program, which the page is sending.
 struct Sent {
-    /// The files; the first one is the mesh, the texture or the program.
+    /// The files; the first one is the mesh, the scene, the texture or the program.
     files: Vec<FileHead>,
     /// Size of all files.
     bytes: usize,
@@ -48,7 +49,7 @@ impl Sent {
         is_accepted.then_some(Self { files, bytes, data })
     }
 
-    /// Converts the mesh, the texture or the program of a complete upload to a request.
+    /// Converts the mesh, the scene, the texture or the program of a complete upload to a request.
     ///
     /// # Errors
     /// A file violates its format, or a buffer is missing. The error is one line for the user.
@@ -65,12 +66,12 @@ impl Sent {
                     places: image::Places::new(self.data),
                 }))
             }
-            _ => self.converted_model().map(Request::Upload),
+            _ => self.converted_model(),
         }
     }
 
-    /// Converts a mesh or a texture.
-    fn converted_model(self) -> Result<Upload, String> {
+    /// Converts a mesh, a scene or a texture.
+    fn converted_model(self) -> Result<Request, String> {
         let mut rest = self.data;
         let mut files = self.files.into_iter().map(|file| {
             let after = rest.split_off(file.bytes);
@@ -81,14 +82,17 @@ impl Sent {
             let converted = texture::of_bytes(&mesh, &TextureOptions::default(), None, CUTOFF);
             let converted = converted.map_err(|error| error.in_path(name.as_ref()).to_string());
             let (bytes, report) = converted?;
-            return Ok(Upload {
+            return Ok(Request::Upload(Upload {
                 name: board_name(&name).unwrap_or_default(),
                 bytes,
                 up: None,
                 remarks: report.remarks,
-            });
+            }));
         }
         let mut beside = Beside::new(&name, files);
+        if scene::is_scene(&name) {
+            return Scene::of_file(&name, &mesh, &mut beside).map(Request::Scene);
+        }
         let options = Options::default();
         let model = model::of_file(&name, mesh, options, &mut |name| beside.read(name));
         let hint = beside.hint();
@@ -98,12 +102,12 @@ impl Sent {
         })?;
         let remarks = model.remarks().iter().cloned();
         let inside_out = model.inside_out().map(str::to_owned);
-        Ok(Upload {
+        Ok(Request::Upload(Upload {
             remarks: remarks.chain(hint).chain(inside_out).collect(),
             name: MODEL.to_owned(),
             bytes: model.mesh,
             up: Some(model.up),
-        })
+        }))
     }
 }
 

@@ -33,7 +33,7 @@ function notify(text, isError = true) {
 
 const console_ = startConsole(send);
 const panel = startPanel(send);
-const { show: showProgress, fetchFile } = startUpload(send, (bytes) => sendData(bytes), notify);
+const { show: showProgress, fetchFile, sendScene } = startUpload(send, (bytes) => sendData(bytes), notify, carry);
 const showSample = startCurves();
 const motion = startMotion(send, notify);
 startOrbit(send);
@@ -64,21 +64,32 @@ function showBoard({ name, has_pins, is_shared }) {
 }
 
 const LISTS = ["scenes", "meshes", "fields"];
+const KEYS = { scenes: "scene", meshes: "mesh", fields: "field" };
 
 let lists;
+
+// Puts what the page shows into its URL, which is then a link to it; without a key removes it.
+function carry(key, value) {
+  history.replaceState(null, "", key ? `#${new URLSearchParams([[key, value]])}` : location.pathname + location.search);
+}
+
+function choose(list, name) {
+  carry(KEYS[list], name);
+  send({ type: "choose", list, name });
+}
 
 function showLists({ commands, ...shown }) {
   console_.setCommands(commands);
   lists = shown;
   for (const list of LISTS) {
-    element(list).replaceChildren(...lists[list].map((name) => choice(name, () => send({ type: "choose", list, name }))));
+    element(list).replaceChildren(...lists[list].map((name) => choice(name, () => choose(list, name))));
     for (const part of [element(list), element(`${list}-title`)]) part.hidden = lists[list].length === 0;
   }
   followAddress();
 }
 
 startTour((list, name) => {
-  if (holder === "you" && lists?.[list].includes(name)) send({ type: "choose", list, name });
+  if (holder === "you" && lists?.[list].includes(name)) choose(list, name);
 });
 
 // A button that shows a scene, a mesh or a field, or starts a program.
@@ -99,14 +110,15 @@ async function showPrograms() {
   element("programs").replaceChildren(...programs.map(({ name, file }) => choice(name, () => fetchFile(file))));
 }
 
-// Shows the scene, mesh, field or program that the page's URL names, once: `#scene=NAME`, `#mesh=NAME`, `#field=NAME`, or
-// `#program=FILE` with a file in the page's folder.
+// Shows the scene, mesh, field or program that the page's URL names, once: `#scene=NAME`, `#mesh=NAME`, `#field=NAME`,
+// `#program=FILE` with a file in the page's folder, or `#scene=TEXT` with the text of a scene file.
 function followAddress() {
   if (holder !== "you" || lists === undefined) return;
   for (const list of LISTS) {
-    const name = address.get({ scenes: "scene", meshes: "mesh", fields: "field" }[list]);
+    const name = address.get(KEYS[list]);
     if (name === null) continue;
-    if (lists[list].includes(name)) send({ type: "choose", list, name });
+    if (lists[list].includes(name)) choose(list, name);
+    else if (list === "scenes" && name.includes("=")) sendScene(name);
     else notify(`#${location.hash.slice(1)}: expected one of ${lists[list].join(", ")}`);
   }
   const program = address.get("program");

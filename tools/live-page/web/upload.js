@@ -1,9 +1,11 @@
-// Uploads a model, a single texture or a program that the user drops on the page or chooses, as files or as a folder.
+// Uploads a model, a scene, a single texture or a program that the user drops on the page or chooses, as files or as a folder.
 const CHUNK = 64 << 10;
 const MAX_BYTES = 64 << 20;
 // Maximum number of auxiliary files and maximum length of a name that the receiver accepts.
 const MAX_BESIDE = 192;
 const MAX_NAME = 100;
+// Maximum size of a scene file that the page's URL carries.
+const MAX_CARRIED = 4096;
 // Maximum number of files and folders to search: a folder that was dropped by mistake may contain
 // millions.
 const MAX_ENTRIES = 20000;
@@ -11,8 +13,12 @@ const MAX_ENTRIES = 20000;
 const PICTURES = [".png", ".jpg", ".jpeg"];
 const BESIDE = [".mtl", ".bin", ...PICTURES];
 const TEXTURES = [".glt", ...PICTURES];
+const WIREFRAMES = [".wft", ".wfb"];
+const SCENES = [".toml"];
 // A program of cargo has no extension.
 const PROGRAMS = [".elf", ".bin", ""];
+// Files that are no models.
+const OTHERS = [...BESIDE, ...TEXTURES, ...WIREFRAMES, ...SCENES, ...PROGRAMS];
 
 const extension = (path) => /[^/]*$/.exec(path)[0].match(/\.[^.]*$/)?.[0].toLowerCase() ?? "";
 const depth = (path) => path.split("/").length;
@@ -47,26 +53,31 @@ function withoutCommonFolders(files) {
   return files.map(({ path, file }) => ({ path: path.split("/").slice(shared).join("/"), file }));
 }
 
-export function startUpload(send, sendBytes, notify) {
+// `carry` puts a scene into the page's URL, or removes what is there.
+export function startUpload(send, sendBytes, notify, carry) {
   const bar = document.getElementById("progress");
   const inputs = { files: document.getElementById("file"), folder: document.getElementById("folder") };
-  const MESHES = inputs.files.accept.split(",").filter((name) => ![...BESIDE, ...TEXTURES, ...PROGRAMS].includes(name));
+  const MESHES = inputs.files.accept.split(",").filter((name) => !OTHERS.includes(name));
+  // Files that a scene names, and their auxiliary files.
+  const OF_SCENES = [...MESHES, ...BESIDE, ...TEXTURES, ...WIREFRAMES];
 
-  // The mesh nearest to the top folder, and its auxiliary files; or the only file, a texture or a program.
+  // The scene or else the mesh nearest to the top folder, and its auxiliary files; or the only file, a texture or a program.
   function modelOf(found) {
     const sorted = found.sort(order);
     const nearest = (extensions) => sorted.find(({ path }) => extensions.includes(extension(path)));
-    const mesh = nearest(MESHES);
+    const scene = nearest(SCENES);
+    const mesh = scene ?? nearest(MESHES);
     const main = mesh ?? (sorted.length === 1 ? nearest([...TEXTURES, ...PROGRAMS]) : undefined);
     if (!main) {
       const names = sorted.slice(0, 3).map(({ path }) => path).join(", ");
-      throw new Error(`expected a model (${MESHES.join(", ")}) and the files that it names, a single texture (${TEXTURES.join(", ")}) or a single program (.elf, .bin), found ${names || "no file"}`);
+      throw new Error(`expected a model (${MESHES.join(", ")}) or a scene (${SCENES.join(", ")}) and the files that it names, a single texture (${TEXTURES.join(", ")}) or a single program (.elf, .bin), found ${names || "no file"}`);
     }
-    const beside = mesh ? sorted.filter(({ path }) => BESIDE.includes(extension(path))) : [];
+    const named = scene ? OF_SCENES : BESIDE;
+    const beside = mesh ? sorted.filter(({ path }) => named.includes(extension(path))) : [];
     const files = withoutCommonFolders([main, ...beside]);
     const size = files.reduce((sum, { file }) => sum + file.size, 0);
     const instead = "drop only the model and the files that it names";
-    if (main.file.size === 0) throw new Error(`${main.path}: expected a model, a texture or a program, found an empty file`);
+    if (main.file.size === 0) throw new Error(`${main.path}: expected a model, a scene, a texture or a program, found an empty file`);
     if (files.length > MAX_BESIDE + 1) throw new Error(`expected at most ${MAX_BESIDE} materials, buffers and pictures, found ${files.length - 1}: ${instead}`);
     if (size > MAX_BYTES) throw new Error(`${main.path}: expected files of at most 64 MiB together, found ${size} bytes: ${instead}`);
     return files;
@@ -74,7 +85,7 @@ export function startUpload(send, sendBytes, notify) {
 
   async function upload(entries) {
     if (entries.length === 0) return;
-    if (document.body.dataset.holder !== "you") return notify("Take control to upload a model or a program.");
+    if (document.body.dataset.holder !== "you") return notify("Take control to upload a model, a scene or a program.");
     notify("");
     const contents = [];
     let heads;
@@ -92,6 +103,8 @@ export function startUpload(send, sendBytes, notify) {
       return notify(message);
     }
     const [mesh, ...beside] = heads;
+    const isCarried = SCENES.includes(extension(mesh.name)) && beside.length === 0 && mesh.bytes <= MAX_CARRIED;
+    carry(...(isCarried ? ["scene", new TextDecoder().decode(contents[0])] : []));
     send({ type: "upload", ...mesh, beside });
     for (const bytes of contents) {
       for (let start = 0; start < bytes.byteLength; start += CHUNK) sendBytes(bytes.slice(start, start + CHUNK));
@@ -128,5 +141,7 @@ export function startUpload(send, sendBytes, notify) {
       notify(`${name}: expected a file beside the page: ${message}`);
     }
   };
-  return { show, fetchFile };
+  // Uploads a scene file with this text.
+  const sendScene = (text) => upload([new File([text], "link.toml")]);
+  return { show, fetchFile, sendScene };
 }

@@ -1,9 +1,10 @@
-//! Programs on the page: by a button, by the page's address, and by a dropped file.
+//! Programs and scenes on the page: by a button, by the page's address, and by a dropped file.
 
 use crate::alone::Files;
 use crate::browser::{Browser, Page};
+use crate::page::wait_for_pixels;
 use crate::served::Served;
-use crate::upload::drop_files;
+use crate::upload::{drop_files, rendered, wait_for_notice};
 use glint_board_api::built;
 use litex_pac::BUILD_ID;
 
@@ -59,6 +60,18 @@ fn a_page_without_a_program_plays_the_examples_and_returns_to_the_firmware() {
         &page,
         &format!("{NOTICE}.startsWith('#scene=nowhere: expected one of ')"),
     );
+    // So does an address with the text of a scene, which a dropped scene becomes.
+    let scene = "title = 'A ring'\nmodel = 'torus'\ncamera = '2.5 30 60'\nsize = '320 180'\n";
+    drop_files(&mut browser, &page, &[("ring.toml", scene.into())]);
+    wait_for_notice(&mut browser, &page, "the scene ring.toml is shown");
+    let address = browser.evaluate(&page, "location.href");
+    let page = browser.open(address.as_str().unwrap());
+    wait_for_notice(&mut browser, &page, "the scene link.toml is shown");
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("ring.toml"), scene).unwrap();
+    let shown = rendered(folder.path(), &["--scene", "ring.toml"]);
+    wait_for_pixels(&mut browser, &page, &shown);
+
     let page = browser.open(&format!("{}#program=nothing.bin", files.url));
     browser.wait(
         &page,
@@ -75,7 +88,11 @@ fn a_watched_program_starts_again_when_its_file_changes() {
     let served = Served::start_with("watch", &["--web", "--watch", "--firmware", file]);
     let mut browser = Browser::start();
     let page = browser.open(&served.url);
-    browser.wait(&page, &format!("{LOG}.includes('newton: ')"));
+    // The next notice would otherwise replace the one that is expected.
+    browser.wait(
+        &page,
+        &format!("{NOTICE}.startsWith('The program has no prompt')"),
+    );
     std::fs::write(&path, b"no program\n").unwrap();
     browser.wait(
         &page,
@@ -101,6 +118,7 @@ fn a_dropped_program_replaces_the_running_one_and_its_faults_are_shown() {
         (0, ["panicked at ", "a fault on purpose"]),
         (2, ["stack overflow: ", " is in "]),
         (4, ["trap: illegal instruction", " is in update, "]),
+        (1, ["no picture for 10 seconds", " is in update, "]),
     ]) {
         let start = "faults: switches 0 to 4";
         browser.wait(&page, &format!("{LOG}.split('{start}').length > {starts}"));

@@ -1,4 +1,4 @@
-//! The picture of a model that is dropped on the page equals the picture of `glint render`,
+//! The picture of a model or a scene that is dropped on the page equals the picture of `glint render`,
 //! whatever the page has shown before.
 
 use crate::browser::{Browser, Page};
@@ -16,6 +16,10 @@ const OBJ: &[u8] = b"mtllib corner.mtl\nv 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 1\nusem
 const MTL: &[u8] = b"newmtl red\nKd 1 0.2 0.1\nnewmtl green\nKd 0.1 0.8 0.2\n";
 /// A triangle.
 const STL: &[u8] = b"solid a\nfacet normal 0 -1 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 0 2\nendloop\nendfacet\nendsolid a\n";
+
+/// A scene with this mesh, a generated and a built-in one, and a replacement texture.
+const SCENE: &str = "title = 'Corners'\nobject = ['corner.obj', 'icosphere:2 move 1,0,0', 'crate scale 0.5 move 0,1,0']\n\
+    texture = 'squares.png'\ncamera = '4 20 60'\nfov = 50\nbackground = '203040'\n";
 
 /// A rectangle with a texture, whose file is in a folder.
 const SIGN: &[u8] = b"mtllib sign.mtl\nusemtl sign\nv 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
@@ -104,7 +108,7 @@ pub fn drop_files(browser: &mut Browser, page: &Page, files: &[(&str, Vec<u8>)])
 }
 
 /// Waits for a notice that begins with a text, and returns it.
-fn wait_for_notice(browser: &mut Browser, page: &Page, start: &str) -> String {
+pub fn wait_for_notice(browser: &mut Browser, page: &Page, start: &str) -> String {
     let notice = "document.getElementById('notice')";
     browser.wait(page, &format!("{notice}.textContent.startsWith({start:?})"));
     let text = browser.evaluate(page, &format!("{notice}.textContent"));
@@ -114,7 +118,7 @@ fn wait_for_notice(browser: &mut Browser, page: &Page, start: &str) -> String {
 const SHOWN: &str = "the model is shown";
 
 /// The pixels of `glint render FILE` as red, green, blue and opacity.
-fn rendered(folder: &Path, arguments: &[&str]) -> Vec<u8> {
+pub fn rendered(folder: &Path, arguments: &[&str]) -> Vec<u8> {
     let picture = folder.join("picture.png");
     let output = Command::new(env!("CARGO_BIN_EXE_glint"))
         .arg("render")
@@ -181,6 +185,40 @@ fn a_dropped_mesh_is_the_picture_of_glint_render() {
         let folder = folder_of(&files);
         wait_for_pixels(&mut browser, &page, &rendered(folder.path(), &[name]));
     }
+    let mut scene = files(&[("corner.obj", OBJ), ("corner.mtl", MTL)]);
+    scene.push(("own.toml", SCENE.into()));
+    scene.push(("squares.png", squares()));
+    drop_files(&mut browser, &page, &scene);
+    let notice = wait_for_notice(&mut browser, &page, "the scene own.toml is shown");
+    assert!(!notice.contains(';'), "{notice}");
+    let shown = rendered(folder_of(&scene).path(), &["--scene", "own.toml"]);
+    wait_for_pixels(&mut browser, &page, &shown);
+    // A missing or wrong file of a scene leaves the picture.
+    drop_files(&mut browser, &page, &scene[1..]);
+    wait_for_notice(
+        &mut browser,
+        &page,
+        "expected the file corner.obj of the scene; drop 'own.toml' together with 'corner.obj'",
+    );
+    let wrong = SCENE.replace("fov = 50", "fov = 500");
+    drop_files(&mut browser, &page, &[("own.toml", wrong.into())]);
+    wait_for_notice(&mut browser, &page, "own.toml: line 5: ");
+    wait_for_pixels(&mut browser, &page, &shown);
+
+    let net = std::fs::read(
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/pictures/wireframe.wft"),
+    );
+    let scene = [
+        (
+            "net.toml",
+            b"title = 'A net'\nprogram = 'wireframe.wft'\nsize = '320 180'\n".to_vec(),
+        ),
+        ("wireframe.wft", net.unwrap()),
+    ];
+    drop_files(&mut browser, &page, &scene);
+    wait_for_notice(&mut browser, &page, "the scene net.toml is shown");
+    let shown = rendered(folder_of(&scene).path(), &["--scene", "net.toml"]);
+    wait_for_pixels(&mut browser, &page, &shown);
     // The list of meshes contains the model.
     browser.wait(
         &page,
@@ -264,7 +302,7 @@ fn a_dropped_model_has_its_textures() {
         ),
         (
             &gltf[1..],
-            "expected a model (.obj, .stl, .ply, .gltf, .glb, .glm) and the files that it names, \
+            "expected a model (.obj, .stl, .ply, .gltf, .glb, .glm) or a scene (.toml) and the files that it names, \
              a single texture (.glt, .png, .jpg, .jpeg) or a single program (.elf, .bin), found square a.bin, squares.png"
                 .into(),
         ),
