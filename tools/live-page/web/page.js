@@ -80,6 +80,7 @@ function choose(list, name) {
 
 function showLists({ commands, ...shown }) {
   console_.setCommands(commands);
+  panel.describe(commands.length > 0);
   lists = shown;
   for (const list of LISTS) {
     element(list).replaceChildren(...lists[list].map((name) => choice(name, () => choose(list, name))));
@@ -154,7 +155,7 @@ const HANDLERS = {
   notice: ({ text, is_error }) => notify(text, is_error),
 };
 
-element("full").addEventListener("click", () => element("monitor").requestFullscreen().catch(({ message }) => notify(message)));
+element("full").addEventListener("click", () => element("screen").requestFullscreen().catch(({ message }) => notify(message)));
 element("full").hidden = !document.fullscreenEnabled;
 
 // Clears the state of the last board.

@@ -5,11 +5,12 @@ const SEGMENTS = [
   "M14 4H46L40 12H20Z", "M54 8V46L50 50L44 44V18Z", "M54 54V92L44 82V56L50 50Z", "M14 96H46L40 88H20Z",
   "M6 54V92L16 82V56L10 50Z", "M6 8V46L10 50L16 44V18Z", "M16 46H44L48 50L44 54H16L12 50Z",
 ];
-// The function of each button, from docs/boards.md.
+// The direction of each button, and its function in the firmware, from docs/boards.md.
 const BUTTONS = [
-  "fire 1", "fire 2",
-  "left: calibrate the sensor; together with BTN3 start the wireframe again",
-  "right: recentre the camera; together with BTN2 start the wireframe again",
+  ["up", "fire 1"],
+  ["down", "fire 2"],
+  ["left", "calibrate the sensor; together with BTN3 start the wireframe again"],
+  ["right", "recentre the camera; together with BTN2 start the wireframe again"],
 ];
 const VALUES = [0x3f, 0x06, 0x5b, 0x4f, 0x66, 0x6d, 0x7d, 0x07, 0x7f, 0x6f, 0x77, 0x7c, 0x39, 0x5e, 0x79, 0x71];
 
@@ -73,12 +74,10 @@ export function startPanel(send) {
   };
   const end = (number) => (kept >> number) & 1 || press(number, false);
   const isKey = ({ key }) => key === " " || key === "Enter";
-  const buttons = BUTTONS.map((purpose, number) => {
+  const buttons = BUTTONS.map((_, number) => {
     const button = document.createElement("button");
     button.type = "button";
     button.textContent = `BTN${number}`;
-    button.title = purpose;
-    button.setAttribute("aria-label", `button ${number}, ${purpose}`);
     button.addEventListener("pointerdown", (event) => {
       button.setPointerCapture(event.pointerId);
       begin(number, event);
@@ -89,6 +88,21 @@ export function startPanel(send) {
     return button;
   });
   element("buttons").append(...buttons);
+
+  // Describes the buttons; a program other than the firmware gives them functions of its own.
+  function describe(isFirmware) {
+    BUTTONS.forEach(([direction, purpose], number) => {
+      buttons[number].title = isFirmware ? `${direction}: ${purpose}` : direction;
+      buttons[number].setAttribute("aria-label", `button ${number}, ${buttons[number].title}`);
+    });
+  }
+  describe(true);
+
+  // In full screen the buttons lie over the picture, for fingers.
+  addEventListener("fullscreenchange", () => {
+    const parent = element(document.fullscreenElement ? "screen" : "panel");
+    parent.insertBefore(element("buttons"), parent.querySelector("#motion"));
+  });
 
   // A gamepad presses the buttons by its directions: up, down, left, right.
   const DIRECTIONS = [12, 13, 14, 15];
@@ -123,5 +137,5 @@ export function startPanel(send) {
   // Clears the pressed buttons; the board's side releases them when control passes to another page.
   const release = () => (pressed = kept = 0);
 
-  return { show, release };
+  return { show, release, describe };
 }

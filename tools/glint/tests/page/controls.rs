@@ -1,5 +1,5 @@
 //! The page in use: completion of names, moving the camera with the mouse, sizes of controls on a
-//! telephone, and a picture at rest.
+//! telephone, buttons by gamepad and fingers, and a picture at rest.
 
 use crate::browser::{Browser, Page};
 use crate::served::Served;
@@ -325,4 +325,67 @@ fn rest_looks_like_rest() {
     browser.type_line(&page, "orbit 200");
     browser.wait(&page, &format!("/^[0-9]+ pictures\\/s$/.test({rate})"));
     browser.wait(&page, &format!("{rate} === 'still'"));
+}
+
+/// A gamepad presses the buttons, and in full screen two fingers do.
+#[test]
+fn a_gamepad_and_fingers_press_the_buttons() {
+    let served = Served::start("page-buttons");
+    let mut browser = Browser::start();
+    let pad = "globalThis.pad = { buttons: Array.from({ length: 16 }, () => ({ pressed: false })), axes: [0, 0] }; \
+        navigator.getGamepads = () => [null, pad];";
+    let page = browser.open_with(&served.url, pad);
+    browser.wait(&page, "document.body.dataset.holder === 'you'");
+    // The board, not the page, reports which buttons are down.
+    let wait = |browser: &mut Browser, buttons: &str| {
+        let down = "[...document.querySelectorAll('#buttons [aria-pressed=true]')].map(({ textContent }) => textContent)";
+        browser.wait(&page, &format!("{down}.join(' ') === '{buttons}'"));
+    };
+    for (change, buttons) in [
+        (
+            "pad.buttons[14].pressed = true; dispatchEvent(new Event('gamepadconnected'))",
+            "BTN2",
+        ),
+        ("pad.axes = [0.2, -0.9]", "BTN0 BTN2"),
+        ("pad.buttons[14].pressed = false", "BTN0"),
+        ("pad.axes = [1, 1]", "BTN1 BTN3"),
+        ("pad.axes = [0, 0]", ""),
+    ] {
+        browser.evaluate(&page, &format!("{change}; 0"));
+        wait(&mut browser, buttons);
+    }
+    let title = "document.querySelector('#buttons button').title";
+    browser.wait(&page, &format!("{title} === 'up: fire 1'"));
+
+    let fingers = json!({ "enabled": true, "maxTouchPoints": 2 });
+    browser.call(Some(&page), "Emulation.setTouchEmulationEnabled", fingers);
+    let full = browser.middle(&page, "#full");
+    for kind in ["mousePressed", "mouseReleased"] {
+        browser.mouse(&page, kind, full);
+    }
+    browser.wait(&page, "document.fullscreenElement?.id === 'screen'");
+    browser.wait(
+        &page,
+        "document.querySelector('#screen #buttons button').checkVisibility()",
+    );
+    let [left, right] =
+        [2, 4].map(|place| browser.middle(&page, &format!("#buttons button:nth-of-type({place})")));
+    for (kind, points) in [
+        ("touchStart", vec![left]),
+        ("touchStart", vec![left, right]),
+        ("touchEnd", vec![]),
+    ] {
+        let points: Vec<_> = (points.iter().enumerate())
+            .map(|(id, [x, y])| json!({ "x": x, "y": y, "id": id }))
+            .collect();
+        let buttons = ["", "BTN1", "BTN1 BTN3"][points.len()];
+        let event = json!({ "type": kind, "touchPoints": points });
+        browser.call(Some(&page), "Input.dispatchTouchEvent", event);
+        wait(&mut browser, buttons);
+    }
+    browser.evaluate(&page, "document.exitFullscreen()");
+    browser.wait(
+        &page,
+        "document.querySelector('#panel > #buttons + #motion') !== null",
+    );
 }

@@ -37,6 +37,11 @@ fn a_page_without_a_program_plays_the_examples_and_returns_to_the_firmware() {
     );
     wait_for_light(&mut browser, &page, 500);
     browser.wait(&page, "document.getElementById('scenes').hidden");
+    // The program's functions of the buttons are unknown.
+    browser.wait(
+        &page,
+        "document.querySelector('#buttons button').title === 'up'",
+    );
 
     let press = |name: &str| {
         format!(
