@@ -322,7 +322,7 @@ fn rest_looks_like_rest() {
     );
     assert!(rows.as_f64().unwrap() < 20.0, "{rows} of 60 rows");
     browser.evaluate(&page, "document.getElementById('line').focus()");
-    browser.type_line(&page, "orbit 200");
+    browser.type_line(&page, "orbit 60");
     browser.wait(&page, &format!("/^[0-9]+ pictures\\/s$/.test({rate})"));
     browser.wait(&page, &format!("{rate} === 'still'"));
 }
