@@ -25,9 +25,11 @@ const QUICK_BUILD: [&str; 4] = [
 
 /// The longest-running programs, by package and target, longest first. These programs start first; otherwise a long program would
 /// run alone at the end.
-const LONGEST: [(&str, &str); 5] = [
+const LONGEST: [(&str, &str); 7] = [
     ("glint", "board"),
+    ("glint", "page"),
     ("testbench", "triangle"),
+    ("glint", "programs"),
     ("virtual-board", "board"),
     ("reference", "reference"),
     ("testbench", "raymarch"),
