@@ -7,7 +7,8 @@ use glint_core::wireframe::{EXTENSIONS, Program};
 use glint_mesh::convert::{Options, TextureOptions};
 use glint_mesh::texture::CUTOFF;
 use glint_mesh::{generate, model, texture};
-use glint_scene_file::SceneFile;
+use glint_scene_file::{MAX_BYTES, SceneFile};
+use std::path::Path;
 
 /// A scene to show.
 #[derive(Debug)]
@@ -35,7 +36,13 @@ pub struct File {
 
 /// Whether a file is a scene file.
 pub fn is_scene(name: &str) -> bool {
-    name.ends_with(".toml")
+    stem(name).is_some()
+}
+
+/// The name of a scene file without folder and extension; `None` for another file.
+fn stem(name: &str) -> Option<&str> {
+    let (stem, extension) = name.rsplit('/').next()?.rsplit_once('.')?;
+    extension.eq_ignore_ascii_case("toml").then_some(stem)
 }
 
 impl Scene {
@@ -44,13 +51,15 @@ impl Scene {
     /// # Errors
     /// A file violates its format, or is missing. The error is one line for the user.
     pub fn of_file(name: &str, text: &[u8], beside: &mut Beside) -> Result<Self, String> {
+        if text.len() as u64 > MAX_BYTES {
+            let found = text.len();
+            return Err(format!(
+                "{name}: expected at most {MAX_BYTES} bytes, found {found}"
+            ));
+        }
         let text = str::from_utf8(text)
             .map_err(|error| format!("{name}: expected text in UTF-8: {error}"))?;
-        let stem = name
-            .rsplit('/')
-            .next()
-            .and_then(|last| last.strip_suffix(".toml"));
-        let scene = SceneFile::parse(stem.unwrap_or(name), name, text);
+        let scene = SceneFile::parse(stem(name).unwrap_or(name), name, text);
         let scene = scene.map_err(|error| error.to_string().replace('\n', "; "))?;
         if !scene.scenes().is_empty() {
             return Err(format!(
@@ -108,15 +117,18 @@ fn read(name: &str, beside: &mut Beside) -> Result<Vec<u8>, String> {
 }
 
 fn of_mesh(name: &str, beside: &mut Beside, remarks: &mut Vec<String>) -> Result<Vec<u8>, String> {
-    let options = Options::default();
+    let (options, path) = (Options::default(), Path::new(name));
     let model = if generate::is_name(name) {
-        model::load(name, options)
+        model::generated(name, options)
     } else {
         let bytes = read(name, beside)?;
-        model::of_file(name, bytes, options, &mut |name| beside.read(name))
+        // The names in a mesh file are relative to its folder.
+        let mut read = |other: &str| beside.read(&path.with_file_name(other).to_string_lossy());
+        model::of_file(name, bytes, options, &mut read)
     };
     let model = model.map_err(|error| error.to_string())?;
     remarks.extend(model.remarks().iter().cloned());
+    remarks.extend(model.inside_out().map(str::to_owned));
     Ok(model.mesh)
 }
 
@@ -142,4 +154,83 @@ fn of_program(name: &str, beside: &mut Beside, _: &mut Vec<String>) -> Result<Ve
         false => Program::new_checked(&bytes).map(|program| program.bytes().to_vec()),
     };
     program.map_err(|error| format!("{name}: {error}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TRIANGLE: &str = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n";
+
+    fn scene(text: &str, files: &[(&str, &str)]) -> Result<Scene, String> {
+        let files = files.iter();
+        let files = files.map(|&(name, text)| (name.to_owned(), text.into()));
+        let name = "own/A.TOML";
+        Scene::of_file(name, text.as_bytes(), &mut Beside::new(name, files))
+    }
+
+    #[test]
+    fn a_scene_has_its_files_and_commands() {
+        let text =
+            "title = 'A'\nobject = ['m/a.obj', 'icosphere:1', 'sphere']\ncamera = '3 0 60'\n";
+        let files = |first, second| {
+            [
+                ("own/a.mtl", first),
+                ("own/m/a.mtl", second),
+                ("own/m/a.obj", TRIANGLE),
+            ]
+        };
+        let [red, green] = ["newmtl m\nKd 1 0 0\n", "newmtl m\nKd 0 1 0\n"];
+        let found = scene(text, &files(red, green)).unwrap();
+        let names: Vec<_> = found.files.iter().map(|file| file.name.as_str()).collect();
+        assert_eq!(names, ["m/a.obj", "icosphere:1"]);
+        assert_eq!(found.remarks, [""; 0]);
+        assert_eq!(found.commands[0], "scene default");
+        assert!(
+            found.commands.contains(&"object add sphere".to_owned()),
+            "{found:?}"
+        );
+        // The material is that in the folder of the mesh.
+        let other = scene(text, &files(green, green)).unwrap();
+        assert_eq!(found.files[0].bytes, other.files[0].bytes);
+        let other = scene(text, &files(red, red)).unwrap();
+        assert_ne!(found.files[0].bytes, other.files[0].bytes);
+    }
+
+    #[test]
+    fn errors_name_the_file() {
+        let long = "#".repeat(MAX_BYTES as usize + 1);
+        for (text, files, error) in [
+            ("title = 'A'\nfov = 500", &[][..], "own/A.TOML: "),
+            (
+                &long,
+                &[],
+                "own/A.TOML: expected at most 1048576 bytes, found 1048577",
+            ),
+            (
+                "title = 'A'\nscenes = ['cubes']",
+                &[],
+                "own/A.TOML: expected the scene of a picture, found a list of scenes",
+            ),
+            (
+                "title = 'A'\nmodel = 'crate'\ntexture = 'a.png'",
+                &[],
+                "expected the file a.png of the scene; drop 'A.TOML' together with 'a.png'",
+            ),
+            (
+                "title = 'A'\nprogram = 'a.wft'",
+                &[("a.wft", "eye\n")],
+                "a.wft: ",
+            ),
+            (
+                "title = 'A'\nprogram = 'a.wfb'",
+                &[("a.wfb", "eye\n")],
+                "a.wfb: ",
+            ),
+        ] {
+            let found = scene(text, files).unwrap_err();
+            assert!(found.starts_with(error), "{found}");
+            assert!(!found.contains('\n'), "{found}");
+        }
+    }
 }

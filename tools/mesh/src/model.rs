@@ -141,10 +141,10 @@ pub fn polygons(name: &str) -> Result<Polygons, InputError> {
 /// # Errors
 /// As for [`polygons`] and [`convert::convert`].
 pub fn load(name: &str, options: Options) -> Result<Model, InputError> {
-    let path = Path::new(name);
     if is_generated(name) {
-        return converted(path, &polygons(name)?, options);
+        return generated(name, options);
     }
+    let path = Path::new(name);
     check_name(name)?;
     let (format, bytes) = formats::read_mesh(path)?;
     of_bytes(
@@ -154,6 +154,15 @@ pub fn load(name: &str, options: Options) -> Result<Model, InputError> {
         options,
         &mut formats::in_folder_of(path),
     )
+}
+
+/// Generates a model and converts it; reads no file.
+///
+/// # Errors
+/// No such generator exists.
+pub fn generated(name: &str, options: Options) -> Result<Model, InputError> {
+    let polygons = generate::named(name).map_err(|error| error.in_file(name))?;
+    converted(Path::new(name), &polygons, options)
 }
 
 /// Converts a mesh file in memory. The extension of its name selects the format; `beside` reads auxiliary files by their names.

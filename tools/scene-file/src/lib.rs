@@ -18,5 +18,5 @@ pub use built_in::{NAMES, TEXTS};
 pub use error::{SceneError, Violation};
 pub use keys::{BUDGET, names as keys};
 pub use needs::{Fields, Needs};
-pub use read::{built_in, read};
+pub use read::{MAX_BYTES, built_in, read};
 pub use scene::{Budget, SceneFile, Steer, upright};

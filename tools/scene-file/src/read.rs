@@ -11,7 +11,7 @@ use crate::scene::SceneFile;
 /// The name of standard input.
 const STDIN: &str = "-";
 /// Maximum length of a scene file in bytes.
-const MAX_BYTES: u64 = 1 << 20;
+pub const MAX_BYTES: u64 = 1 << 20;
 
 /// The built-in scene `name`; `None` for another name.
 pub fn built_in(name: &str) -> Option<SceneFile> {
