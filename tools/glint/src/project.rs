@@ -15,7 +15,7 @@ const LIBRARY: &str = "firmware/program";
 const RESERVED: [&str; 4] = ["build", "deps", "examples", "incremental"];
 
 /// Files of a project and their templates.
-const FILES: [(&str, &str); 5] = [
+const FILES: [(&str, &str); 6] = [
     (
         "Cargo.toml",
         include_str!("../templates/program/Cargo.toml.in"),
@@ -27,6 +27,10 @@ const FILES: [(&str, &str); 5] = [
     (
         "src/main.rs",
         include_str!("../templates/program/main.rs.in"),
+    ),
+    (
+        "tests/board.rs",
+        include_str!("../templates/program/board.rs.in"),
     ),
     (
         "README.md",

@@ -2,19 +2,21 @@
 
 use super::common::{LineArguments, Unsynchronised, bad_value};
 use super::messages::{note, say, warn};
-use super::output::Output;
+use super::output::{Output, PICTURE};
 use super::progress::{show_simulation, spinner};
 use super::terminal::{print_output, talk};
 use anyhow::Context;
 use clap::Args;
-use glint::board::{self, AnyBoard, BoardName};
-use glint::console::BIOS_PROMPT;
+use glint::board::{self, AnyBoard, Board, BoardName, MonitorFrame};
+use glint::console::{BIOS_PROMPT, plain};
 use glint::error::quote;
 use glint::formats::read_up_to;
 use glint::web::{Server, Watched, read_program};
 use glint_board_api::pace::SystemClock;
+use glint_core::colour::Rgb565;
 use glint_core::console::PROMPT;
 use glint_live_page::{Live, LiveSimulation, Places};
+use glint_texture::picture::Picture;
 use rustix::termios::isatty;
 use std::net::SocketAddr;
 use std::os::unix::fs::symlink;
@@ -26,6 +28,8 @@ use std::time::Duration;
 use virtual_board::pty::Pty;
 use virtual_board::virtual_flash::{Flash, MAX_BYTES};
 
+/// Time-out of a read from the board with `--seconds`, in milliseconds of the board's time.
+const POLL_MS: u64 = 10;
 /// Ends of the prompts of the firmware and of the BIOS.
 const PROMPTS: [&[u8]; 2] = [PROMPT.as_bytes(), BIOS_PROMPT];
 
@@ -63,6 +67,15 @@ pub struct BoardArguments {
     /// Only for the emulated board; port 0 selects a free port [default: 127.0.0.1:3333].
     #[arg(long, value_name = "ADDR", num_args = 0..=1, default_missing_value = "127.0.0.1:3333", conflicts_with_all = ["bios", "flash"])]
     gdb: Option<SocketAddr>,
+    /// Run a simulated board for this time, print the output of its program, and end; takes the place of --web and --watch before it.
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, overrides_with_all = ["web", "watch"], conflicts_with_all = ["pty", "ready_file", "gdb"])]
+    seconds: Option<Duration>,
+    /// With --seconds, hold these of the buttons 0 to 3 down, such as `0,2`.
+    #[arg(long, value_name = "BUTTONS", value_delimiter = ',', value_parser = clap::value_parser!(u8).range(0..4), requires = "seconds")]
+    hold: Vec<u8>,
+    /// With --seconds, write the picture on the monitor at the end.
+    #[arg(long, value_name = "PICTURE.png", requires = "seconds")]
+    picture: Option<PathBuf>,
     /// Board: `emulated`, or `virtual` (the verilated SoC), which is slow; with --web or --firmware also a serial port.
     #[arg(long, default_value = "emulated")]
     board: BoardName,
@@ -80,9 +93,10 @@ impl BoardArguments {
         if let Some(address) = self.web {
             return self.serve(address);
         }
-        match &self.board {
-            BoardName::Serial(port) => self.run_on(port),
-            _ => self.stay(),
+        match (&self.board, self.seconds) {
+            (BoardName::Serial(port), _) => self.run_on(port),
+            (_, Some(time)) => self.run_for(time),
+            (_, None) => self.stay(),
         }
     }
 
@@ -135,6 +149,7 @@ impl BoardArguments {
             (self.ready_file.is_some(), "--ready-file"),
             (self.bios, "--bios"),
             (self.flash.is_some(), "--flash"),
+            (self.seconds.is_some(), "--seconds"),
         ] {
             if is_given {
                 let found = quote(port.as_bytes());
@@ -190,6 +205,46 @@ impl BoardArguments {
         Ok((board, Places::default()))
     }
 
+    /// Runs a simulated board for a time.
+    fn run_for(&self, time: Duration) -> anyhow::Result<()> {
+        let inputs = self.line.firmware.iter().chain(&self.flash);
+        let picture = self.picture.as_deref();
+        let picture = picture.map(|path| Output::open(path, PICTURE, inputs));
+        let picture = picture.transpose()?;
+        let (mut board, mut places) = self.simulated()?;
+        let held = self.hold.iter().fold(0, |held, button| held | 1 << button);
+        board.inner().set_buttons(held);
+        if picture.is_some() {
+            // Turns the monitor on.
+            board.inner().new_frame(0)?;
+        }
+        let end_ms = board.now_ms() + time.as_millis() as u64;
+        let mut line = Vec::new();
+        while board.now_ms() < end_ms {
+            let before = line.len();
+            board.read(&mut line, POLL_MS.min(end_ms - board.now_ms()))?;
+            let said = line.split_off(before);
+            for part in said.split_inclusive(|&byte| byte == b'\n') {
+                line.extend(part);
+                if part.ends_with(b"\n") {
+                    say(plain(&line).trim_end())?;
+                    line.clear();
+                }
+            }
+            places.hear(&said).into_iter().for_each(note);
+        }
+        if !line.is_empty() {
+            say(plain(&line))?;
+        }
+        let Some(output) = picture else {
+            return Ok(());
+        };
+        let (_, frame) = (board.inner().new_frame(0)?)
+            .context("--picture: expected a picture on the monitor within the time of --seconds")?;
+        let png = encoded(&frame)?;
+        output.write(|out| out.write_all(&png))
+    }
+
     fn stay(&self) -> anyhow::Result<()> {
         let ready = self.ready()?;
         // Before this line a signal ends the program at once, also while the program waits for a
@@ -232,6 +287,23 @@ impl BoardArguments {
         drop(starting);
         Ok(())
     }
+}
+
+/// Parses a time in seconds, of at most a day.
+fn seconds(text: &str) -> Result<Duration, &'static str> {
+    let number = text.parse().ok().filter(|number| *number <= 86_400.0);
+    let time = number.and_then(|number| Duration::try_from_secs_f64(number).ok());
+    time.ok_or("expected a number from 0 to 86400")
+}
+
+/// A frame on a monitor as a PNG file.
+fn encoded(frame: &MonitorFrame) -> anyhow::Result<Vec<u8>> {
+    let size = [frame.width, frame.height].map(|side| side as u32);
+    let picture = Picture::drawn(size, |x, y| {
+        let [r, g, b] = Rgb565(frame.pixels[y as usize * frame.width + x as usize]).to_rgb888();
+        [r, g, b, 255]
+    });
+    Ok(picture.png()?)
 }
 
 /// Events that `glint board` waits for.

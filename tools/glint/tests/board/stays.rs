@@ -192,6 +192,35 @@ fn only_links_to_pseudo_terminals_are_replaced() {
 /// An endless firmware file is rejected within bounded memory, and a signal ends the wait for a
 /// pipe.
 #[test]
+fn a_board_that_runs_for_a_time_refuses_other_boards_and_times() {
+    for (arguments, error) in [
+        (
+            &["--seconds", "1", "--board", "/dev/ttyUSB9"][..],
+            "--board with --seconds: expected emulated or virtual, found '/dev/ttyUSB9'",
+        ),
+        (&["--seconds=-1"], "expected a number from 0 to 86400"),
+        (&["--seconds", "nan"], "expected a number from 0 to 86400"),
+        (&["--seconds", "1", "--hold", "4"], "4 is not in 0..4"),
+        (
+            &["--picture", "a.png"],
+            "required arguments were not provided",
+        ),
+        (
+            &["--seconds", "0", "--picture", "a.png"],
+            "expected a picture on the monitor within the time",
+        ),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let mut glint = Command::new(env!("CARGO_BIN_EXE_glint"));
+        glint.arg("board").args(arguments).current_dir(&folder);
+        let output = piped(&mut glint, "");
+        assert!(!output.status.success(), "{arguments:?}");
+        let found = String::from_utf8_lossy(&output.stderr);
+        assert!(found.contains(error), "{arguments:?}: {found}");
+    }
+}
+
+#[test]
 fn firmware_of_devices_and_pipes() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("board-pipes");
     let _ = std::fs::remove_dir_all(&folder);
