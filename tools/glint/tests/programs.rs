@@ -1,20 +1,28 @@
-//! The example programs, with scripted buttons and switches, on the emulated board; one also on the virtual board.
+//! The example programs, with scripted buttons and switches, on the emulated board; one also on the virtual board. The commands for users'
+//! programs, and their projects.
 
-use glint::board::{self, EmulatedBoard, SimulatedBoard, Simulation};
+#[path = "page/browser.rs"]
+#[allow(dead_code, reason = "the tests of the page use the rest")]
+mod browser;
+
+use browser::Browser;
+use glint::board::{self, Board, EmulatedBoard, SerialBoard, SimulatedBoard, Simulation};
 use glint::gesture;
 use glint::imu::log::Entry;
 use glint::imu::sensor;
-use glint::program;
+use glint::{program, project};
 use glint_board_api::{Frame, Uart, built};
 use glint_core::colour::Rgb565;
 use glint_core::digits;
 use glint_live_page::Places;
 use litex_pac::BUILD_ID;
 use std::fs::File;
-use std::io::{BufRead, BufReader, Read, Write};
-use std::net::TcpStream;
+use std::io::{BufRead, BufReader};
+use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 use std::{env, fs};
 use tempfile::TempDir;
 use virtual_board::virtual_image_sensor::{Hand, ImageSensor, Scene};
@@ -22,6 +30,8 @@ use virtual_board::virtual_mpu6050::Wires;
 
 /// Clock cycles in a hundredth of a second.
 const CENTISECOND: u64 = 812_500;
+/// Longest wait for the output of another process.
+const PATIENCE: Duration = Duration::from_secs(60);
 /// Longest time until an expected text.
 const LIMIT: u64 = 20 * 81_250_000;
 
@@ -98,8 +108,8 @@ fn the_flight_turns_by_the_buttons_or_the_sensor() {
     let ahead = run_for(&mut board, 0, 15);
     // The sky at the end of the tunnel is in the middle of the picture.
     let is_sky = |[_, _, b]: [u8; 3]| b > 200;
-    // An eighth of a turn to the right, the end is at the edge of the picture.
-    let aside = run_for(&mut board, 8, 100);
+    // A sixteenth of a turn to the right, the end is aside.
+    let aside = run_for(&mut board, 8, 50);
     let in_middle = |frame: &Frame| frame.pixels[frame.pixels.len() / 2 + frame.width / 2];
     let [ahead, aside] = [ahead, aside].map(|frame| Rgb565(in_middle(&frame)).to_rgb888());
     assert!(is_sky(ahead) && !is_sky(aside), "{ahead:?}, {aside:?}");
@@ -108,7 +118,7 @@ fn the_flight_turns_by_the_buttons_or_the_sensor() {
     board.inner().plug(sensor::virtual_sensor(None));
     let by_sensor = run_for(&mut board, 0, 40);
     // The buttons have no effect while a sensor steers: the sensor looks ahead, to the sky at the end.
-    let turned_by_button = run_for(&mut board, 8, 100);
+    let turned_by_button = run_for(&mut board, 8, 50);
     for frame in [by_sensor, turned_by_button] {
         assert!(is_sky(Rgb565(in_middle(&frame)).to_rgb888()));
     }
@@ -390,77 +400,175 @@ impl Drop for Running {
     }
 }
 
-/// A new project, in a folder that is removed with this value.
-struct Project(TempDir);
+/// The folder of the clone.
+fn root() -> PathBuf {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    root.canonicalize().unwrap()
+}
 
-impl Project {
-    /// The project that `glint new hello` writes.
+/// The folder that a variable names, by default a folder in the user's home.
+fn of_user(variable: &str, default: &str) -> PathBuf {
+    let folder = env::var_os(variable).map(PathBuf::from);
+    folder.unwrap_or_else(|| env::home_dir().unwrap().join(default))
+}
+
+/// A user with a clone of Glint, a Rust compiler and a linker, in a folder of the clone that is removed with this value.
+struct User {
+    home: TempDir,
+    /// The current folder.
+    folder: PathBuf,
+}
+
+impl User {
     fn new() -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-        let made = Command::new(env!("CARGO_BIN_EXE_glint"))
-            .args(["new", "hello", "--glint"])
-            .arg(&root)
-            .current_dir(&folder)
-            .output()
-            .unwrap();
-        assert!(made.status.success(), "{made:?}");
-        Self(folder)
+        let home = tempfile::tempdir_in(root().join("target")).unwrap();
+        let programs = home.path().join("bin");
+        fs::create_dir(&programs).unwrap();
+        let path = env::var_os("PATH").unwrap();
+        for name in ["cargo", "rustc", "cc", "ld"] {
+            let mut found = env::split_paths(&path).map(|folder| folder.join(name));
+            let found = found.find(|program| program.exists());
+            symlink(found.expect(name), programs.join(name)).unwrap();
+        }
+        let folder = home.path().to_owned();
+        Self { home, folder }
     }
 
-    /// A command of cargo in the project. The runner of the project is `glint`: here the tested program.
-    fn cargo(&self, arguments: &[&str]) -> Command {
-        let programs = Path::new(env!("CARGO_BIN_EXE_glint")).parent().unwrap();
-        let path = format!("{}:{}", programs.display(), env::var("PATH").unwrap());
-        let mut command = Command::new("cargo");
+    /// A command without the environment of the tests.
+    fn command(&self, line: &str) -> Command {
+        let mut words = line.split(' ');
+        let programs = self.home.path().join("bin");
+        let mut command = Command::new(programs.join(words.next().unwrap()));
+        command.args(words).current_dir(&self.folder).env_clear();
+        command.envs(env::var_os("RUSTUP_TOOLCHAIN").map(|name| ("RUSTUP_TOOLCHAIN", name)));
         command
-            .args(arguments)
-            .args(["--offline", "--quiet"])
-            .current_dir(self.0.path().join("hello"))
-            .env("PATH", path)
+            .env("PATH", programs)
+            .env("RUSTUP_HOME", of_user("RUSTUP_HOME", ".rustup"))
+            .env("CARGO_HOME", of_user("CARGO_HOME", ".cargo"))
+            .env("CARGO_NET_OFFLINE", "true")
             // The library is compiled once for all runs of the tests.
             .env("CARGO_TARGET_DIR", env!("CARGO_TARGET_TMPDIR"))
-            // Cargo sets variables of the tested package, which do not concern the project.
-            .env_remove("CARGO_MANIFEST_DIR");
+            .env("CARGO_INCREMENTAL", "0");
         command
     }
 
-    /// The memory image of the built program.
-    fn image(profile: &str) -> Vec<u8> {
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("riscv32im-unknown-none-elf");
-        let elf = folder.join(profile).join("hello");
-        program::read(&elf).unwrap().image
+    /// Runs a command, and returns its output.
+    fn run(&self, line: &str) -> String {
+        let output = self.command(line).output().unwrap();
+        assert!(output.status.success(), "{line}: {output:?}");
+        String::from_utf8(output.stdout).unwrap()
+    }
+
+    /// Starts a command that runs until it is killed, and returns its first line of output.
+    fn start(&self, line: &str) -> (Running, String) {
+        let started = self.command(line).stdout(Stdio::piped()).spawn();
+        let mut running = Running(started.unwrap());
+        let output = running.0.stdout.take().unwrap();
+        let mut first = String::new();
+        BufReader::new(output).read_line(&mut first).unwrap();
+        (running, first.trim().to_owned())
+    }
+
+    /// Does what `cargo install --path` does. The tests have built the program already, but with other features of some packages than cargo
+    /// selects for this command, so that cargo would build half of the program again.
+    fn install(&self, path: &str) {
+        let package = root().join(path).canonicalize().unwrap();
+        assert_eq!(package, Path::new(env!("CARGO_MANIFEST_DIR")));
+        let installed = self.home.path().join("bin/glint");
+        fs::copy(env!("CARGO_BIN_EXE_glint"), installed).unwrap();
     }
 }
 
-#[test]
-fn a_new_project_shows_its_program_in_the_page() {
-    let project = Project::new();
-    let run = project.cargo(&["run"]).stdout(Stdio::piped()).spawn();
-    let mut run = Running(run.unwrap());
-    let mut line = String::new();
-    let output = run.0.stdout.take().unwrap();
-    BufReader::new(output).read_line(&mut line).unwrap();
-    let address = line.trim().strip_prefix("http://").unwrap();
-    let (address, path) = address.split_once('/').unwrap();
-    let mut page = TcpStream::connect(address).unwrap();
-    write!(
-        page,
-        "GET /{path} HTTP/1.1\r\nHost: {address}\r\nConnection: close\r\n\r\n"
+/// The lines of the first block of code on the page of programs, and the commands in the table after it.
+fn page_of_programs() -> (Vec<String>, Vec<String>) {
+    let page = fs::read_to_string(root().join("docs/programs.md")).unwrap();
+    let (_, page) = page.split_once("```sh\n").unwrap();
+    let (block, page) = page.split_once("```\n").unwrap();
+    let (_, table) = page
+        .split_once("| command in the project | action |\n|---|---|\n")
+        .unwrap();
+    let rows = table.lines().map_while(|line| line.strip_prefix("| `"));
+    let commands = rows.map(|row| row.split_once('`').unwrap().0.to_owned());
+    (
+        block.lines().map(str::to_owned).collect(),
+        commands.collect(),
     )
-    .unwrap();
-    let mut text = String::new();
-    page.read_to_string(&mut text).unwrap();
-    assert!(
-        text.starts_with("HTTP/1") && text.contains(" 200 "),
-        "{text}"
-    );
+}
 
-    let mut board = board::emulated(&Project::image("debug")).unwrap();
-    let greeting = "hello: hold button 0 to stop the cube\r\n";
-    board.inner().read_until(greeting, LIMIT).unwrap();
-    let turning = run_for(&mut board, 0, 30);
-    assert_ne!(turning, run_for(&mut board, 0, 10));
+#[test]
+fn the_commands_of_the_page_lead_to_programs_in_the_browser_and_on_boards() {
+    let mut user = User::new();
+    let (block, table) = page_of_programs();
+    let greeting = "hello: hold button 0 to stop the cube";
+    let mut shown = 0;
+    for line in &block {
+        match line.split(' ').collect::<Vec<_>>()[..] {
+            ["rustup", "target", "add", target] => assert!(project::has_target(target), "{target}"),
+            ["cargo", "install", "--path", path] => user.install(path),
+            ["glint", "new", _] => drop(user.run(line)),
+            ["cd", folder] => user.folder.push(folder),
+            ["cargo", "run"] => {
+                let (_running, address) = user.start(line);
+                let mut browser = Browser::start();
+                let page = browser.open(&address);
+                let log = "document.getElementById('log').textContent";
+                browser.wait(&page, &format!("{log}.includes('{greeting}')"));
+                // Most of the background is bright.
+                browser.wait_for_light(&page, 200_000);
+                shown += 1;
+            }
+            _ => panic!("{line}: expected a command that this test knows"),
+        }
+    }
+    assert_eq!(shown, 1);
+
+    let elf =
+        Path::new(env!("CARGO_TARGET_TMPDIR")).join("riscv32im-unknown-none-elf/release/hello");
+    for row in &table {
+        let line = row.replace("FILE", elf.to_str().unwrap());
+        match &row[..] {
+            // In the block.
+            "cargo run" => {}
+            "cargo host-test" => {
+                let said = user.run(&line);
+                let passed = said.matches("test result: ok. 1 passed").count();
+                assert_eq!(passed, 2, "{said}");
+            }
+            "cargo run -- --seconds 1 --picture hello.png" => {
+                let said = user.run(&line);
+                assert!(said.contains(greeting), "{said}");
+                let picture = File::open(user.folder.join("hello.png")).unwrap();
+                let picture = png::Decoder::new(BufReader::new(picture)).read_info();
+                assert_eq!(picture.unwrap().info().size(), (1280, 720));
+            }
+            "cargo build --release" => {
+                drop(user.run(&line));
+                let image = program::read(&elf).unwrap().image;
+                assert!(image.len() < NEW_PROJECT, "{} bytes", image.len());
+                let mut board = board::emulated(&image).unwrap();
+                run_for(&mut board, 0, 140);
+                let mut table = Table::read();
+                table.check("`glint new`", Some(rate(&mut board)), image.len());
+                table.write();
+            }
+            "glint board --firmware FILE --board virtual" => {
+                let (_running, port) = user.start(&line);
+                let mut board = SerialBoard::open(&port, 115_200).unwrap();
+                let (mut said, end) = (Vec::new(), Instant::now() + PATIENCE);
+                while !String::from_utf8_lossy(&said).contains(greeting) {
+                    assert!(Instant::now() < end, "{said:?}");
+                    board.read(&mut said, 100).unwrap();
+                }
+            }
+            // The tests of `glint board` have an emulated board behind a port.
+            "glint board --firmware FILE --board PORT" => {}
+            "glint image make --firmware FILE …" => {
+                drop(user.run(&line.replace('…', "--out hello.bin")));
+                drop(user.run("glint image check hello.bin"));
+            }
+            _ => panic!("{row}: expected a command that this test knows"),
+        }
+    }
 }
 
 /// The programs of docs/program-sizes.md, with the buttons that are held for their pictures.
@@ -478,20 +586,26 @@ const PROGRAMS: [(&str, u8); 8] = [
 /// Largest image of a new project in bytes: 80 KB.
 const NEW_PROJECT: usize = 80_000;
 
-/// The table of docs/program-sizes.md.
+/// The table of docs/program-sizes.md, for one test at a time.
 struct Table {
+    _lock: MutexGuard<'static, ()>,
     path: PathBuf,
     page: String,
-    /// Whether the table is written, and not compared.
-    updates: bool,
+}
+
+/// Whether pictures and table of docs/program-sizes.md are written, and not compared.
+fn updates() -> bool {
+    env::var_os("GLINT_UPDATE").is_some()
 }
 
 impl Table {
-    fn read(path: PathBuf) -> Self {
+    fn read() -> Self {
+        static LOCK: Mutex<()> = Mutex::new(());
+        let path = root().join("docs/program-sizes.md");
         Self {
+            _lock: LOCK.lock().unwrap_or_else(PoisonError::into_inner),
             page: fs::read_to_string(&path).unwrap(),
             path,
-            updates: env::var_os("GLINT_UPDATE").is_some(),
         }
     }
 
@@ -503,7 +617,7 @@ impl Table {
         let [_, _, picture, stated_rate, stated_size, _] = cells[..] else {
             panic!("{name}: {cells:?}");
         };
-        if self.updates {
+        if updates() {
             let rate = rate.map_or("–".to_owned(), |rate| rate.to_string());
             let row = format!("| {name} | {picture} | {rate} | {size} |");
             self.page.replace_range(start..end, &row);
@@ -520,7 +634,7 @@ impl Table {
 
     /// Writes the table if it is written.
     fn write(self) {
-        if self.updates {
+        if updates() {
             fs::write(self.path, self.page).unwrap();
         }
     }
@@ -572,10 +686,9 @@ fn of_page(frame: &Frame) -> Vec<u8> {
 
 #[test]
 fn the_pages_of_programs_show_their_pictures_sizes_and_rates() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let mut table = Table::read(root.join("docs/program-sizes.md"));
     let pages = ["docs/programs.md", "docs/gallery.md"];
-    let pages = pages.map(|page| fs::read_to_string(root.join(page)).unwrap());
+    let pages = pages.map(|page| fs::read_to_string(root().join(page)).unwrap());
+    let mut rows = Vec::new();
     for (name, buttons) in PROGRAMS {
         let shows = format!("](pictures/program-{name}.png)");
         assert!(pages.iter().all(|page| page.contains(&shows)), "{name}");
@@ -588,9 +701,9 @@ fn the_pages_of_programs_show_their_pictures_sizes_and_rates() {
         }
         let frame = run_for(&mut board, buttons, 140);
         // A program from another compiler version draws its frames at slightly different times, so the pictures may differ slightly.
-        let shown = root.join(format!("docs/pictures/program-{name}.png"));
+        let shown = root().join(format!("docs/pictures/program-{name}.png"));
         let found = of_page(&frame);
-        if table.updates {
+        if updates() {
             let mut encoder = png::Encoder::new(File::create(&shown).unwrap(), 640, 360);
             encoder.set_color(png::ColorType::Rgb);
             encoder.set_compression(png::Compression::High);
@@ -615,15 +728,11 @@ fn the_pages_of_programs_show_their_pictures_sizes_and_rates() {
 
         // The digits of `fighter` show the score, not the rate.
         let rate = (name != "fighter").then(|| rate(&mut board));
-        table.check(name, rate, image.len());
+        rows.push((name, rate, image.len()));
     }
-    let built = Project::new().cargo(&["build", "--release"]).output();
-    let built = built.unwrap();
-    assert!(built.status.success(), "{built:?}");
-    let image = Project::image("release");
-    assert!(image.len() < NEW_PROJECT, "{} bytes", image.len());
-    let mut board = board::emulated(&image).unwrap();
-    run_for(&mut board, 0, 140);
-    table.check("`glint new`", Some(rate(&mut board)), image.len());
+    let mut table = Table::read();
+    for (name, rate, size) in rows {
+        table.check(name, rate, size);
+    }
     table.write();
 }

@@ -150,6 +150,14 @@ impl Browser {
         self.evaluate(page, &look);
     }
 
+    /// Waits until the monitor of a live page shows a picture with more than `count` bright pixels.
+    pub fn wait_for_light(&mut self, page: &Page, count: u32) {
+        let lit = "(() => { const canvas = document.getElementById('monitor'); \
+            const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height); \
+            let lit = 0; for (let i = 0; i < data.length; i += 4) lit += data[i + 1] > 100; return lit; })()";
+        self.wait(page, &format!("{lit} > {count}"));
+    }
+
     /// Types a text into the focused element, and presses Enter.
     pub fn type_line(&mut self, page: &Page, text: &str) {
         self.call(Some(page), "Input.insertText", json!({ "text": text }));

@@ -1,7 +1,7 @@
 //! Programs and scenes on the page: by a button, by the page's address, and by a dropped file.
 
 use crate::alone::Files;
-use crate::browser::{Browser, Page};
+use crate::browser::Browser;
 use crate::page::wait_for_pixels;
 use crate::served::Served;
 use crate::upload::{drop_files, rendered, wait_for_notice};
@@ -17,14 +17,6 @@ fn elf(name: &str) -> Vec<u8> {
     std::fs::read(built::find(&file, "cargo xtask programs").unwrap()).unwrap()
 }
 
-/// Waits until the monitor shows a picture with this many pixels in a line that are not black.
-fn wait_for_light(browser: &mut Browser, page: &Page, count: u32) {
-    let lit = "(() => { const canvas = document.getElementById('monitor'); \
-        const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height); \
-        let lit = 0; for (let i = 0; i < data.length; i += 4) lit += data[i + 1] > 100; return lit; })()";
-    browser.wait(page, &format!("{lit} > {count}"));
-}
-
 #[test]
 fn a_page_without_a_program_plays_the_examples_and_returns_to_the_firmware() {
     let files = Files::start();
@@ -35,7 +27,7 @@ fn a_page_without_a_program_plays_the_examples_and_returns_to_the_firmware() {
         &page,
         &format!("{LOG}.includes('fighter: fly through the gates')"),
     );
-    wait_for_light(&mut browser, &page, 500);
+    browser.wait_for_light(&page, 500);
     browser.wait(&page, "document.getElementById('scenes').hidden");
     // The program's functions of the buttons are unknown.
     browser.wait(
@@ -168,5 +160,5 @@ fn a_dropped_program_replaces_the_running_one_and_its_faults_are_shown() {
     }
     drop_files(&mut browser, &page, &[("cube.elf", elf("cube"))]);
     browser.wait(&page, &format!("{NOTICE}.startsWith('cube.elf runs, ')"));
-    wait_for_light(&mut browser, &page, 1_000);
+    browser.wait_for_light(&page, 1_000);
 }
