@@ -11,6 +11,9 @@ use std::process::Command;
 /// Folder of the package `glint-program`, the library of programs, in a clone of Glint.
 const LIBRARY: &str = "firmware/program";
 
+/// The lock file with which this program was built.
+const LOCK: &str = include_str!("../../../Cargo.lock");
+
 /// Names of folders that cargo creates; a program cannot have such a name.
 const RESERVED: [&str; 4] = ["build", "deps", "examples", "incremental"];
 
@@ -184,11 +187,12 @@ pub fn write(path: &Path, source: &Source) -> Result<(), ProjectError> {
         put(&folder.path().join(file), text.as_bytes())?;
     }
     // The lock file selects the versions with which Glint is tested. Cargo removes the packages that the project does not use.
-    if let Source::Clone(clone) = source
-        && let Ok(lock) = fs::read(clone.join("Cargo.lock"))
-    {
-        put(&folder.path().join("Cargo.lock"), &lock)?;
-    }
+    let lock = match source {
+        Source::Clone(clone) => fs::read_to_string(clone.join("Cargo.lock")).ok(),
+        Source::Git(_) => None,
+    };
+    let lock = lock.as_deref().unwrap_or(LOCK);
+    put(&folder.path().join("Cargo.lock"), lock.as_bytes())?;
     fs::rename(folder.path(), path).map_err(failed(path))?;
     // The folder has moved, so there is nothing to remove.
     let _ = folder.keep();

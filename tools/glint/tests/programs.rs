@@ -16,6 +16,7 @@ use glint_core::colour::Rgb565;
 use glint_core::digits;
 use glint_live_page::Places;
 use litex_pac::BUILD_ID;
+use serde_json::Value;
 use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::os::unix::fs::symlink;
@@ -568,6 +569,50 @@ fn the_commands_of_the_page_lead_to_programs_in_the_browser_and_on_boards() {
             }
             _ => panic!("{row}: expected a command that this test knows"),
         }
+    }
+}
+
+/// Cargo resolves the project and checks the repository out; the sources are those that the other project compiles. Without network, as the
+/// lock file of the project has all packages of other authors.
+#[test]
+fn a_project_takes_the_library_from_a_git_repository() {
+    let user = User::new();
+    user.install("tools/glint");
+    let bare = user.folder.join("glint.git").display().to_string();
+    let git = |line: &str| {
+        let mut git = Command::new("git");
+        let output = git.args(line.split(' ')).current_dir(root()).output();
+        let output = output.unwrap();
+        assert!(output.status.success(), "{output:?}");
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let own = root().display().to_string();
+    git(&format!("clone --bare --depth=1 file://{own} {bare}"));
+    // No package has a file that a clone lacks.
+    let ignored = git("ls-files --others --ignored --exclude-standard firmware");
+    assert_eq!(ignored, "");
+
+    let url = format!("file://{bare}");
+    user.run(&format!("glint new hello --glint {url}"));
+    let mut cargo = user
+        .command("cargo metadata --format-version 1 --filter-platform riscv32im-unknown-none-elf");
+    cargo.current_dir(user.folder.join("hello"));
+    // Cargo stores repositories beside the packages that it has downloaded.
+    let packages = of_user("CARGO_HOME", ".cargo").join("registry");
+    symlink(packages, user.folder.join("registry")).unwrap();
+    cargo.env("CARGO_HOME", &user.folder);
+    // Cargo counts a repository in a file as network. The proxy does not exist.
+    cargo
+        .env_remove("CARGO_NET_OFFLINE")
+        .env("https_proxy", "http://127.0.0.1:9");
+    let output = cargo.output().unwrap();
+    assert!(output.status.success(), "{output:?}");
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let packages = found["packages"].as_array().unwrap();
+    for name in ["glint-program", "glint-core", "litex-pac"] {
+        let package = packages.iter().find(|package| package["name"] == name);
+        let source = package.unwrap()["source"].as_str().unwrap();
+        assert!(source.starts_with(&format!("git+{url}#")), "{source}");
     }
 }
 
