@@ -128,12 +128,8 @@ pub trait Simulation: Uart {
     /// Replaces the program by the memory image `program`, and resets the board, which then starts it. Connected devices stay.
     ///
     /// # Errors
-    /// The image exceeds main memory, or this board starts only with its first program.
-    fn boot(&mut self, program: &[u8]) -> Result<(), BoardError> {
-        let _ = program;
-        let error = "this board keeps its first program: end it, and start it with --firmware";
-        Err(BoardError::simulation(error))
-    }
+    /// The image exceeds main memory, or the files of the virtual board's gateware have changed and are not valid.
+    fn boot(&mut self, program: &[u8]) -> Result<(), BoardError>;
 
     /// Connects a motion sensor to the I2C bus; replaces the connected sensor, if any.
     fn plug(&mut self, sensor: Wires);

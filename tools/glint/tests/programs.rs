@@ -372,8 +372,18 @@ fn elf_files_of_other_programs_are_refused() {
 }
 
 #[test]
-fn the_fighter_runs_on_the_verilated_soc() {
-    let mut board = board::verilated(&image("fighter")).unwrap();
+fn the_fighter_takes_the_place_of_another_program_on_the_verilated_soc() {
+    let mut board = board::verilated(&image("faults")).unwrap();
+    board.inner().monitor().turn_on();
+    board.inner().set_switches(1);
+    let halt = "press Enter to restart\r\n";
+    board.inner().read_until(halt, LIMIT).unwrap();
+    // The switch stays on.
+    let cycles = board.inner().cycles();
+    board.inner().boot(&image("faults")).unwrap();
+    board.inner().read_until(halt, LIMIT).unwrap();
+    assert!(board.inner().cycles() > cycles);
+    board.inner().boot(&image("fighter")).unwrap();
     board
         .inner()
         .read_until("fly through the gates\r\n", LIMIT)

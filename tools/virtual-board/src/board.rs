@@ -97,14 +97,19 @@ impl<'a> Builder<'a> {
         if !path.is_file() {
             return Err(Error::LibraryMissing { path, command });
         }
-        let mut soc = Soc::load(&path)?;
+        let mut soc = match self.start {
+            Start::Full => Soc::load(&path)?,
+            Start::Fast { firmware } => preloaded(&path, firmware)?,
+        };
         if let Some(path) = self.trace
             && !soc.trace(&path)?
         {
             return Err(Error::Trace { path });
         }
-        let mut board = VirtualBoard {
+        Ok(VirtualBoard {
+            library: path,
             soc,
+            before: 0,
             monitor: Monitor::default(),
             flash: None,
             sensor: None,
@@ -113,25 +118,32 @@ impl<'a> Builder<'a> {
             digits: Digits::default(),
             uart: Vec::new(),
             running: Duration::ZERO,
-        };
-        if let Start::Fast { firmware } = self.start {
-            let found = board.soc.build_id();
-            if found != litex_pac::BUILD_ID {
-                return Err(Error::BuildId {
-                    expected: litex_pac::BUILD_ID,
-                    found,
-                });
-            }
-            board.soc.rom_write(&boot::stub());
-            board.ddr_write(MAIN_RAM.base, firmware)?;
-        }
-        Ok(board)
+        })
     }
+}
+
+/// A SoC before its first clock edge, with a program in main RAM, to which the ROM jumps.
+fn preloaded(library: &Path, program: &[u8]) -> Result<Soc, Error> {
+    let offset = main_ram_offset(MAIN_RAM.base, program.len())?;
+    let mut soc = Soc::load(library)?;
+    let found = soc.build_id();
+    if found != litex_pac::BUILD_ID {
+        return Err(Error::BuildId {
+            expected: litex_pac::BUILD_ID,
+            found,
+        });
+    }
+    soc.rom_write(&boot::stub());
+    soc.ddr_write(offset, program);
+    Ok(soc)
 }
 
 /// A virtual board: the SoC, and the devices on its pins.
 pub struct VirtualBoard {
+    library: PathBuf,
     soc: Soc,
+    /// Cycles of the SoCs that earlier programs had.
+    before: u64,
     monitor: Monitor,
     flash: Option<Flash>,
     sensor: Option<Wires>,
@@ -220,7 +232,7 @@ impl VirtualBoard {
     /// Reads new serial output, video and the state of the digits from the SoC.
     fn collect(&mut self) {
         self.soc.uart_read(&mut self.uart);
-        self.digits.update(self.soc.cycles(), self.soc.digits());
+        self.digits.update(self.cycles(), self.soc.digits());
         if self.monitor.is_on() {
             let monitor = &mut self.monitor;
             self.soc.video_take(|samples| monitor.watch(samples));
@@ -338,7 +350,7 @@ impl VirtualBoard {
 
     /// Runs the SoC until all pending stores of the CPU have reached memory.
     fn settle(&mut self) {
-        if self.cycles() > 0 {
+        if self.soc.cycles() > 0 {
             self.run(SETTLE);
         }
     }
@@ -368,7 +380,7 @@ impl Uart for VirtualBoard {
     }
 
     fn cycles(&self) -> u64 {
-        self.soc.cycles()
+        self.before + self.soc.cycles()
     }
 
     fn clock_hz(&self) -> u32 {
@@ -389,6 +401,22 @@ impl Uart for VirtualBoard {
 }
 
 impl Simulation for VirtualBoard {
+    /// Continues with a new SoC. Waveforms and the recording of instructions end.
+    fn boot(&mut self, program: &[u8]) -> Result<(), BoardError> {
+        let mut soc = preloaded(&self.library, program).map_err(BoardError::simulation)?;
+        soc.take_levels(&self.soc);
+        self.before = self.cycles();
+        self.soc = soc;
+        self.camera_clock = (0, 0);
+        self.digits = Digits::default();
+        let was_on = self.monitor.is_on();
+        self.monitor = Monitor::default();
+        if was_on {
+            self.monitor.turn_on();
+        }
+        Ok(())
+    }
+
     fn set_buttons(&mut self, pressed: u8) {
         self.soc.set_buttons(pressed);
     }

@@ -214,6 +214,13 @@ impl Soc {
         self.instance.set_value(self.switches, on.into());
     }
 
+    /// Sets buttons and switches to the levels of another SoC of this library.
+    pub fn take_levels(&mut self, other: &Self) {
+        for pins in [self.buttons, self.switches] {
+            self.instance.set_value(pins, other.instance.value(pins));
+        }
+    }
+
     pub fn leds(&self) -> u16 {
         self.instance.value(self.leds) as u16
     }
