@@ -9,6 +9,7 @@ mod connected;
 mod controls;
 mod page;
 mod programs;
+mod project;
 mod rates;
 mod refusals;
 mod serial;
