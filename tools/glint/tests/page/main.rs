@@ -1,5 +1,5 @@
-//! The live page of an emulated board, in a real browser. Requires the builds of `cargo xtask firmware` and `cargo xtask web`,
-//! and Debian's `chromium`.
+//! The live page of an emulated board, in a real browser. Requires the builds of `cargo xtask firmware`, `cargo xtask web`
+//! and `cargo xtask gateware`, and Debian's `chromium`.
 
 mod alone;
 mod browser;
