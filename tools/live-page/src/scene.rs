@@ -1,13 +1,14 @@
 //! Scene files that a page sends, with the files that they name.
 
 use crate::beside::Beside;
+use crate::viewer::MAX_UPLOAD;
 use glint_core::shape::Shape;
 use glint_core::wireframe::text::assemble;
 use glint_core::wireframe::{EXTENSIONS, Program};
 use glint_mesh::convert::{Options, TextureOptions};
 use glint_mesh::texture::CUTOFF;
 use glint_mesh::{generate, model, texture};
-use glint_scene_file::{MAX_BYTES, SceneFile};
+use glint_scene_file::{MAX_BYTES, SceneFile, Steer};
 use std::path::Path;
 
 /// A scene to show.
@@ -17,8 +18,10 @@ pub struct Scene {
     pub name: String,
     /// The files to upload.
     pub files: Vec<File>,
-    /// The console commands that show it.
+    /// The console commands that set the picture.
     pub commands: Vec<String>,
+    /// The console command that starts the control of the camera, if any.
+    pub control: Option<String>,
     /// The remarks on the files.
     pub remarks: Vec<String>,
 }
@@ -66,7 +69,7 @@ impl Scene {
                 "{name}: expected the scene of a picture, found a list of scenes"
             ));
         }
-        let mut files = Vec::new();
+        let (mut files, mut size) = (Vec::new(), 0);
         let mut remarks = scene.notes().into_iter().map(str::to_owned).collect();
         let mut add = |name: &str, convert: Convert, is_program| {
             let bytes =
@@ -74,6 +77,12 @@ impl Scene {
                     Some(hint) => format!("{error}; {hint}"),
                     None => error,
                 })?;
+            size += bytes.len();
+            if size > MAX_UPLOAD {
+                return Err(format!(
+                    "{name}: expected meshes, textures and programs of at most {MAX_UPLOAD} bytes together"
+                ));
+            }
             let name = name.to_owned();
             files.push(File {
                 name,
@@ -92,11 +101,19 @@ impl Scene {
             .program()
             .map_or(Ok(()), |name| add(name, of_program, true))?;
         remarks.extend(beside.hint());
-        let commands = ["scene default"].into_iter().chain(scene.lines());
+        let settings = scene.settings().iter().cloned();
+        let control = match scene.steer() {
+            Steer::Command(command) => Some(command.clone()),
+            Steer::Fixed | Steer::Buttons => None,
+        };
         Ok(Self {
             name: name.to_owned(),
             files,
-            commands: commands.map(str::to_owned).collect(),
+            commands: ["scene default".to_owned()]
+                .into_iter()
+                .chain(settings)
+                .collect(),
+            control,
             remarks,
         })
     }
@@ -149,7 +166,8 @@ fn of_program(name: &str, beside: &mut Beside, _: &mut Vec<String>) -> Result<Ve
     let [text_form, _] = EXTENSIONS;
     let extension = name.rsplit_once('.').map(|(_, extension)| extension);
     let text = String::from_utf8_lossy(&bytes);
-    let program = match extension == Some(text_form) {
+    let is_text = extension.is_some_and(|extension| extension.eq_ignore_ascii_case(text_form));
+    let program = match is_text {
         true => assemble(&text),
         false => Program::new_checked(&bytes).map(|program| program.bytes().to_vec()),
     };

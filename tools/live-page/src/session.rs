@@ -465,36 +465,30 @@ impl<'a> Session<'a> {
         let Some(choice) = self.channels.choices().find(list, name).cloned() else {
             return Ok(());
         };
-        self.type_lines(choice.commands)?;
+        let mut commands = choice.commands.into_iter();
+        let first = commands.next().unwrap_or_default();
+        self.type_line(&first)?;
+        self.waiting.extend(commands.map(Request::Command));
         self.frames = choice.frames.into();
         Ok(())
     }
 
-    /// Types the first line at once, and the others one by one.
-    fn type_lines(&mut self, lines: Vec<String>) -> Result<(), BoardError> {
-        let mut lines = lines.into_iter();
-        let first = lines.next().unwrap_or_default();
-        self.type_line(&first)?;
-        self.waiting.extend(lines.map(Request::Command));
-        Ok(())
-    }
-
-    /// Uploads the files of a scene, and types its commands.
+    /// Uploads the files of a scene, and executes its commands, up to the first one that the board refuses.
     fn show_scene(&mut self, scene: Scene) -> Result<(), BoardError> {
+        let session = self.uploads.wrapping_add(1);
+        self.uploads = session.wrapping_add(scene.files.len() as u8);
+        let is_shown =
+            self.ask_until_cancelled(|console, hub| show_scene(console, hub, &scene, session))?;
+        if !is_shown {
+            return Ok(());
+        }
         if !scene.files.is_empty() {
-            let session = self.uploads.wrapping_add(1);
-            self.uploads = session.wrapping_add(scene.files.len() as u8);
-            if !self
-                .ask_until_cancelled(|console, hub| upload_all(console, hub, &scene, session))?
-            {
-                return Ok(());
-            }
             self.update_lists()?;
         }
         let title = format!("the scene {} is shown", scene.name);
         let text: Vec<_> = [title].into_iter().chain(scene.remarks).collect();
         self.hub.notify(text.join("; "), false);
-        self.type_lines(scene.commands)
+        scene.control.map_or(Ok(()), |line| self.type_line(&line))
     }
 
     /// Moves the camera around the subject. The first motion stops the steering by sensor and hand.
@@ -848,8 +842,9 @@ fn upload(
     Ok(())
 }
 
-/// Uploads the files of a scene. The first transfer has the number `session`.
-fn upload_all(
+/// Uploads the files of a scene, and executes its commands. The first transfer has the number `session`. The notes of the board on a file
+/// are dropped, because they are about the scene that is shown during the upload.
+fn show_scene(
     console: &mut Console<Watched>,
     hub: &Hub,
     scene: &Scene,
@@ -874,5 +869,8 @@ fn upload_all(
         session = session.wrapping_add(1);
     }
     hub.end_progress();
+    for command in &scene.commands {
+        console.command(command)?;
+    }
     Ok(())
 }

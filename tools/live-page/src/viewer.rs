@@ -14,7 +14,7 @@ use glint_mesh::texture::{self, CUTOFF};
 use glint_program_image as image;
 
 /// Maximum total size in bytes of the files of an upload.
-const MAX_UPLOAD: usize = 64 << 20;
+pub const MAX_UPLOAD: usize = 64 << 20;
 
 /// Maximum number of auxiliary files of an upload. With names of any characters, the list of these
 /// files fits a message.

@@ -128,6 +128,11 @@ function followAddress() {
   address = new URLSearchParams();
 }
 
+addEventListener("hashchange", () => {
+  address = new URLSearchParams(location.hash.slice(1));
+  followAddress();
+});
+
 // Shows why the soft core drew the picture or computed the triangles for the engine, and why most
 // triangles are not drawn.
 function showRemarks({ stats }) {

@@ -82,7 +82,7 @@ export function startPanel(send) {
       button.setPointerCapture(event.pointerId);
       begin(number, event);
     });
-    for (const name of ["pointerup", "pointercancel", "blur"]) button.addEventListener(name, () => end(number));
+    for (const name of ["pointerup", "pointercancel", "lostpointercapture", "blur"]) button.addEventListener(name, () => end(number));
     button.addEventListener("keydown", (event) => isKey(event) && begin(number, event));
     button.addEventListener("keyup", (event) => isKey(event) && end(number));
     return button;

@@ -65,8 +65,10 @@ export function startUpload(send, sendBytes, notify, carry) {
   function modelOf(found) {
     const sorted = found.sort(order);
     const nearest = (extensions) => sorted.find(({ path }) => extensions.includes(extension(path)));
-    const scene = nearest(SCENES);
-    const mesh = scene ?? nearest(MESHES);
+    let mesh = nearest(MESHES);
+    let scene = nearest(SCENES);
+    if (mesh && scene && depth(mesh.path) < depth(scene.path)) scene = undefined;
+    mesh = scene ?? mesh;
     const main = mesh ?? (sorted.length === 1 ? nearest([...TEXTURES, ...PROGRAMS]) : undefined);
     if (!main) {
       const names = sorted.slice(0, 3).map(({ path }) => path).join(", ");
@@ -76,14 +78,15 @@ export function startUpload(send, sendBytes, notify, carry) {
     const beside = mesh ? sorted.filter(({ path }) => named.includes(extension(path))) : [];
     const files = withoutCommonFolders([main, ...beside]);
     const size = files.reduce((sum, { file }) => sum + file.size, 0);
-    const instead = "drop only the model and the files that it names";
+    const instead = "drop only the model or the scene and the files that it names";
     if (main.file.size === 0) throw new Error(`${main.path}: expected a model, a scene, a texture or a program, found an empty file`);
-    if (files.length > MAX_BESIDE + 1) throw new Error(`expected at most ${MAX_BESIDE} materials, buffers and pictures, found ${files.length - 1}: ${instead}`);
+    if (files.length > MAX_BESIDE + 1) throw new Error(`expected at most ${MAX_BESIDE} files that belong to it, found ${files.length - 1}: ${instead}`);
     if (size > MAX_BYTES) throw new Error(`${main.path}: expected files of at most 64 MiB together, found ${size} bytes: ${instead}`);
     return files;
   }
 
-  async function upload(entries) {
+  // `link` is what the page's URL carries, if it is known.
+  async function upload(entries, link) {
     if (entries.length === 0) return;
     if (document.body.dataset.holder !== "you") return notify("Take control to upload a model, a scene or a program.");
     notify("");
@@ -104,7 +107,7 @@ export function startUpload(send, sendBytes, notify, carry) {
     }
     const [mesh, ...beside] = heads;
     const isCarried = SCENES.includes(extension(mesh.name)) && beside.length === 0 && mesh.bytes <= MAX_CARRIED;
-    carry(...(isCarried ? ["scene", new TextDecoder().decode(contents[0])] : []));
+    carry(...(link ?? (isCarried ? ["scene", new TextDecoder().decode(contents[0])] : [])));
     send({ type: "upload", ...mesh, beside });
     for (const bytes of contents) {
       for (let start = 0; start < bytes.byteLength; start += CHUNK) sendBytes(bytes.slice(start, start + CHUNK));
@@ -136,7 +139,7 @@ export function startUpload(send, sendBytes, notify, carry) {
     try {
       const response = await fetch(name);
       if (!response.ok) return notify(`${name}: expected a file beside the page, found status ${response.status}`);
-      await upload([new File([await response.blob()], name)]);
+      await upload([new File([await response.blob()], name)], ["program", name]);
     } catch ({ message }) {
       notify(`${name}: expected a file beside the page: ${message}`);
     }

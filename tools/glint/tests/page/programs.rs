@@ -42,6 +42,7 @@ fn a_page_without_a_program_plays_the_examples_and_returns_to_the_firmware() {
     };
     browser.evaluate(&page, &press("kernel"));
     browser.wait(&page, &format!("{LOG}.includes('newton: ')"));
+    browser.wait(&page, "location.hash === '#program=kernel.bin'");
     browser.evaluate(&page, &press("firmware"));
     browser.wait(
         &page,
