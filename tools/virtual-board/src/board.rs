@@ -404,6 +404,7 @@ impl Simulation for VirtualBoard {
     /// Continues with a new SoC. Waveforms and the recording of instructions end.
     fn boot(&mut self, program: &[u8]) -> Result<(), BoardError> {
         let mut soc = preloaded(&self.library, program).map_err(BoardError::simulation)?;
+        self.collect();
         soc.take_levels(&self.soc);
         self.before = self.cycles();
         self.soc = soc;

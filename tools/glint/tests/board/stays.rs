@@ -189,8 +189,6 @@ fn only_links_to_pseudo_terminals_are_replaced() {
     assert_eq!(std::fs::read_link(folder.join("port")).unwrap(), other);
 }
 
-/// An endless firmware file is rejected within bounded memory, and a signal ends the wait for a
-/// pipe.
 #[test]
 fn a_board_that_runs_for_a_time_refuses_other_boards_and_times() {
     for (arguments, error) in [
@@ -220,6 +218,8 @@ fn a_board_that_runs_for_a_time_refuses_other_boards_and_times() {
     }
 }
 
+/// An endless firmware file is rejected within bounded memory, and a signal ends the wait for a
+/// pipe.
 #[test]
 fn firmware_of_devices_and_pipes() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("board-pipes");

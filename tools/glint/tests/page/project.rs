@@ -39,7 +39,7 @@ fn of_user(variable: &str, default: &str) -> PathBuf {
     folder.unwrap_or_else(|| env::home_dir().unwrap().join(default))
 }
 
-/// A user with a clone of Glint, a Rust compiler and a linker, in a folder of the clone that is removed with this value.
+/// A user with a clone of Glint, a Rust compiler and a linker, in a folder outside of the clone that is removed with this value.
 struct User {
     home: TempDir,
     /// The current folder.
@@ -48,9 +48,14 @@ struct User {
 
 impl User {
     fn new() -> Self {
-        let home = tempfile::tempdir_in(root().join("target")).unwrap();
+        let home = tempfile::tempdir().unwrap();
         let programs = home.path().join("bin");
         fs::create_dir(&programs).unwrap();
+        // Only the downloaded packages are those of the user who runs the tests.
+        let cargo = home.path().join(".cargo");
+        fs::create_dir(&cargo).unwrap();
+        let packages = of_user("CARGO_HOME", ".cargo").join("registry");
+        symlink(packages, cargo.join("registry")).unwrap();
         let path = env::var_os("PATH").unwrap();
         for name in ["cargo", "rustc", "cc", "ld"] {
             let mut found = env::split_paths(&path).map(|folder| folder.join(name));
@@ -71,7 +76,7 @@ impl User {
         command
             .env("PATH", programs)
             .env("RUSTUP_HOME", of_user("RUSTUP_HOME", ".rustup"))
-            .env("CARGO_HOME", of_user("CARGO_HOME", ".cargo"))
+            .env("CARGO_HOME", self.home.path().join(".cargo"))
             .env("CARGO_NET_OFFLINE", "true")
             // The library is compiled once for all runs of the tests.
             .env("CARGO_TARGET_DIR", env!("CARGO_TARGET_TMPDIR"))
@@ -86,16 +91,6 @@ impl User {
         String::from_utf8(output.stdout).unwrap()
     }
 
-    /// Starts a command that runs until it is killed, and returns its first line of output.
-    fn start(&self, line: &str) -> (Running, String) {
-        let started = self.command(line).stdout(Stdio::piped()).spawn();
-        let mut running = Running(started.unwrap());
-        let output = running.0.stdout.take().unwrap();
-        let mut first = String::new();
-        BufReader::new(output).read_line(&mut first).unwrap();
-        (running, first.trim().to_owned())
-    }
-
     /// Does what `cargo install --path` does. The tests have built the program already, but with other features of some packages than cargo
     /// selects for this command, so that cargo would build half of the program again.
     fn install(&self, path: &str) {
@@ -103,7 +98,19 @@ impl User {
         assert_eq!(package, Path::new(env!("CARGO_MANIFEST_DIR")));
         let installed = self.home.path().join("bin/glint");
         fs::copy(env!("CARGO_BIN_EXE_glint"), installed).unwrap();
+        let name = format!("glint 0.1.0 (path+file://{})", package.display());
+        let list = serde_json::json!({ "installs": { name: {} } }).to_string();
+        fs::write(self.home.path().join(".cargo/.crates2.json"), list).unwrap();
     }
+}
+
+/// Starts a command that runs until it is killed, and returns its first line of output.
+fn start(command: &mut Command) -> (Running, String) {
+    let mut running = Running(command.stdout(Stdio::piped()).spawn().unwrap());
+    let output = running.0.stdout.take().unwrap();
+    let mut first = String::new();
+    BufReader::new(output).read_line(&mut first).unwrap();
+    (running, first.trim().to_owned())
 }
 
 /// The lines of the first block of code on the page of programs, and the commands in the table after it.
@@ -135,7 +142,7 @@ fn the_commands_of_the_page_lead_to_programs_in_the_browser_and_on_boards() {
             ["glint", "new", _] => drop(user.run(line)),
             ["cd", folder] => user.folder.push(folder),
             ["cargo", "run"] => {
-                let (_running, address) = user.start(line);
+                let (_running, address) = start(&mut user.command(line));
                 let mut browser = Browser::start();
                 let page = browser.open(&address);
                 let log = "document.getElementById('log').textContent";
@@ -169,8 +176,9 @@ fn the_commands_of_the_page_lead_to_programs_in_the_browser_and_on_boards() {
                 assert_eq!(picture.unwrap().info().size(), (1280, 720));
             }
             "cargo build --release" => drop(user.run(&line)),
-            "glint board --firmware FILE --board virtual" => {
-                let (_running, port) = user.start(&line);
+            "GLINT_HOME=CLONE glint board --firmware FILE --board virtual" => {
+                let mut command = user.command(line.split_once(' ').unwrap().1);
+                let (_running, port) = start(command.env("GLINT_HOME", root()));
                 let mut board = SerialBoard::open(&port, 115_200).unwrap();
                 let (mut said, end) = (Vec::new(), Instant::now() + PATIENCE);
                 while !String::from_utf8_lossy(&said).contains(greeting) {
@@ -214,10 +222,6 @@ fn a_project_takes_the_library_from_a_git_repository() {
     let mut cargo = user
         .command("cargo metadata --format-version 1 --filter-platform riscv32im-unknown-none-elf");
     cargo.current_dir(user.folder.join("hello"));
-    // Cargo stores repositories beside the packages that it has downloaded.
-    let packages = of_user("CARGO_HOME", ".cargo").join("registry");
-    symlink(packages, user.folder.join("registry")).unwrap();
-    cargo.env("CARGO_HOME", &user.folder);
     // Cargo counts a repository in a file as network. The proxy does not exist.
     cargo
         .env_remove("CARGO_NET_OFFLINE")
