@@ -3,6 +3,9 @@
 use glint_mesh::error::quote;
 use std::path::{Component, Path, PathBuf};
 
+/// Maximum total size in bytes of the files of an upload.
+pub const MAX_UPLOAD: usize = 64 << 20;
+
 /// Maximum number of missing files that [`Beside::hint`] names.
 const MAX_NAMED: usize = 4;
 

@@ -1,7 +1,6 @@
 //! Scene files that a page sends, with the files that they name.
 
-use crate::beside::Beside;
-use crate::viewer::MAX_UPLOAD;
+use crate::beside::{Beside, MAX_UPLOAD};
 use glint_core::shape::Shape;
 use glint_core::wireframe::text::assemble;
 use glint_core::wireframe::{EXTENSIONS, Program};

@@ -1,6 +1,6 @@
 //! One open page, and the processing of its messages.
 
-use crate::beside::Beside;
+use crate::beside::{Beside, MAX_UPLOAD};
 use crate::channels::{Channels, Program, Request, Upload};
 use crate::hub::{Hub, Id};
 use crate::message::{FileHead, FromPage, ToPage};
@@ -12,9 +12,6 @@ use glint_mesh::convert::{Options, TextureOptions};
 use glint_mesh::model::{self, board_name};
 use glint_mesh::texture::{self, CUTOFF};
 use glint_program_image as image;
-
-/// Maximum total size in bytes of the files of an upload.
-pub const MAX_UPLOAD: usize = 64 << 20;
 
 /// Maximum number of auxiliary files of an upload. With names of any characters, the list of these
 /// files fits a message.
