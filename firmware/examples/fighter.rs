@@ -1,5 +1,5 @@
 //! A game: gates approach the ship, and the buttons steer it through them. Each gate scores a point. The third crash ends the game, and
-//! button up restarts it.
+//! button up restarts it. From the first gate on, the digits show the score in place of the rate of drawing.
 #![cfg_attr(target_arch = "riscv32", no_std, no_main)]
 #![deny(unsafe_code)]
 
@@ -97,7 +97,6 @@ impl Program for Fighter {
     }
 
     fn update(&mut self, board: &mut Board) {
-        board.show_number(self.score);
         board.leds = (1 << self.lives) - 1;
         if self.lives == 0 {
             if board.is_pressed(Button::Up) {
@@ -121,6 +120,7 @@ impl Program for Fighter {
             }
             if (self.ship[0] - x).abs() < GATE && (self.ship[1] - y).abs() < GATE {
                 self.score += 1;
+                board.show_number(self.score);
             } else {
                 self.lives -= 1;
                 let (score, lives) = (self.score, self.lives);

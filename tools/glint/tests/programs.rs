@@ -421,7 +421,7 @@ impl Table {
     }
 
     /// Compares the row of a program with the measured numbers, or replaces the row.
-    fn check(&mut self, name: &str, rate: Option<u32>, size: usize) {
+    fn check(&mut self, name: &str, rate: u32, size: usize) {
         let start = self.page.find(&format!("\n| {name} | ")).unwrap() + 1;
         let end = start + self.page[start..].find('\n').unwrap();
         let cells: Vec<_> = self.page[start..end].split('|').map(str::trim).collect();
@@ -429,7 +429,6 @@ impl Table {
             panic!("{name}: {cells:?}");
         };
         if self.updates {
-            let rate = rate.map_or("–".to_owned(), |rate| rate.to_string());
             let row = format!("| {name} | {picture} | {rate} | {size} |");
             self.page.replace_range(start..end, &row);
             return;
@@ -439,8 +438,8 @@ impl Table {
             (stated - found).abs() < 0.05 * found
         };
         assert!(is_near(stated_size, size as f64), "{name}: {size} bytes");
-        let rate_is_near = rate.is_none_or(|rate| is_near(stated_rate, rate.into()));
-        assert!(rate_is_near, "{name}: {rate:?} pictures per second");
+        let rate_is_near = is_near(stated_rate, rate.into());
+        assert!(rate_is_near, "{name}: {rate} pictures per second");
     }
 
     /// Writes the table if it is written.
@@ -563,14 +562,12 @@ fn the_pages_of_programs_show_their_pictures_sizes_and_rates() {
             "{name}: mean difference of {mean:.1} of 255 to docs/pictures"
         );
 
-        // The digits of `fighter` show the score, not the rate.
-        let rate = (name != "fighter").then(|| rate(&mut board));
-        table.check(name, rate, image.len());
+        table.check(name, rate(&mut board), image.len());
     }
     let image = new_project(&root);
     assert!(image.len() < NEW_PROJECT, "{} bytes", image.len());
     let mut board = board::emulated(&image).unwrap();
     run_for(&mut board, 0, 140);
-    table.check("`glint new`", Some(rate(&mut board)), image.len());
+    table.check("`glint new`", rate(&mut board), image.len());
     table.write();
 }
