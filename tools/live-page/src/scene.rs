@@ -2,7 +2,7 @@
 
 use crate::beside::{Beside, MAX_UPLOAD};
 use glint_core::shape::Shape;
-use glint_core::wireframe::text::assemble;
+use glint_core::wireframe::text::{assemble, lines_after_end};
 use glint_core::wireframe::{EXTENSIONS, Program};
 use glint_mesh::convert::{Options, TextureOptions};
 use glint_mesh::texture::CUTOFF;
@@ -160,17 +160,27 @@ fn of_texture(
     Ok(bytes)
 }
 
-fn of_program(name: &str, beside: &mut Beside, _: &mut Vec<String>) -> Result<Vec<u8>, String> {
+fn of_program(
+    name: &str,
+    beside: &mut Beside,
+    remarks: &mut Vec<String>,
+) -> Result<Vec<u8>, String> {
     let bytes = read(name, beside)?;
     let [text_form, _] = EXTENSIONS;
     let extension = name.rsplit_once('.').map(|(_, extension)| extension);
-    let text = String::from_utf8_lossy(&bytes);
     let is_text = extension.is_some_and(|extension| extension.eq_ignore_ascii_case(text_form));
-    let program = match is_text {
-        true => assemble(&text),
-        false => Program::new_checked(&bytes).map(|program| program.bytes().to_vec()),
+    let text = String::from_utf8_lossy(&bytes);
+    let (bytes, ignored) = if is_text {
+        (assemble(&text), lines_after_end(&text))
+    } else {
+        let program = Program::new_checked(&bytes);
+        let ignored = program.as_ref().map_or(0, Program::ignored);
+        (program.map(|program| program.bytes().to_vec()), ignored)
     };
-    program.map_err(|error| format!("{name}: {error}"))
+    if ignored > 0 {
+        remarks.push(format!("{name}: what follows the end is ignored"));
+    }
+    bytes.map_err(|error| format!("{name}: {error}"))
 }
 
 #[cfg(test)]
@@ -235,14 +245,14 @@ mod tests {
                 "expected the file a.png of the scene; drop 'A.TOML' together with 'a.png'",
             ),
             (
-                "title = 'A'\nprogram = 'a.wft'",
-                &[("a.wft", "eye\n")],
-                "a.wft: ",
+                "title = 'A'\nprogram = 'a.WFT'",
+                &[("a.WFT", "eye\n")],
+                "a.WFT: wireframe program, line 1: ",
             ),
             (
                 "title = 'A'\nprogram = 'a.wfb'",
                 &[("a.wfb", "eye\n")],
-                "a.wfb: ",
+                "a.wfb: wireframe program, ",
             ),
         ] {
             let found = scene(text, files).unwrap_err();
