@@ -10,7 +10,7 @@ use super::trial::{Errors, Trial, trial};
 
 /// Number of measured points of a sphere.
 const POINTS: u32 = 1 << 16;
-/// Radius of the measured sphere in units of 2^-12 field units: a third of a sponge's width in most pictures.
+/// Radius of the measured sphere in units of 2^-12 field units.
 const RADIUS: i32 = 300 << 12;
 /// Directions to the lights and their colours; the last one is behind most points.
 const LIGHTS: [([i64; 3], [u8; 3]); 2] =
